@@ -1,0 +1,1 @@
+"""Inverse optimal control: weights and parameters from measurements."""

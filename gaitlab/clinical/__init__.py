@@ -1,0 +1,1 @@
+"""Clinical quantities and the result document."""

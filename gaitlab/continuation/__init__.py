@@ -1,0 +1,1 @@
+"""Following solutions along a parameter."""

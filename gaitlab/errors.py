@@ -1,0 +1,49 @@
+"""Exceptions raised by gaitlab.
+
+* GaitlabError
+  + ProblemError        a problem is malformed: wrong shape, unknown name, empty grid
+  + InvalidRecording    a recording cannot be used: no markers, too short, unreadable
+  + InvalidSubject      body measurements are missing or impossible
+  + NotConverged        a computation that was asked for did not reach its certificate
+  + Cancelled           the caller asked to stop
+  + OutputError         a result cannot be written
+  + NotFound            no stored object has this identifier
+"""
+
+from collections.abc import Iterable
+
+
+class GaitlabError(Exception):
+    """Base class of all exceptions raised on purpose by gaitlab."""
+
+
+class ProblemError(GaitlabError):
+    """An optimisation problem is malformed."""
+
+
+class InvalidRecording(GaitlabError):
+    """A recording cannot be analysed."""
+
+
+class InvalidSubject(GaitlabError):
+    """Body measurements are missing or impossible."""
+
+
+class NotConverged(GaitlabError):
+    """A computation did not reach its certificate."""
+
+
+class Cancelled(GaitlabError):
+    """The caller asked to stop."""
+
+
+class OutputError(GaitlabError):
+    """A result cannot be written."""
+
+
+class NotFound(GaitlabError):
+    """No object has the requested name."""
+
+    def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
+        known = ", ".join(sorted(available)) or "none"
+        super().__init__(f"{kind} '{name}' does not exist; available: {known}")

@@ -1,0 +1,1 @@
+"""Motion-capture recordings: reading, labels, force plates, events and cycles."""

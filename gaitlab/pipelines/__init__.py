@@ -1,0 +1,1 @@
+"""Pure computations: data in, result out, with progress."""

@@ -1,0 +1,1 @@
+"""Filtering, derivatives, gaps and resampling of sampled signals."""

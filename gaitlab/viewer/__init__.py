@@ -1,0 +1,1 @@
+"""The measured and the optimal walk in 3D."""

@@ -1,0 +1,1 @@
+"""The gait model as an optimal control problem."""
