@@ -1,1 +1,6 @@
 """The command `gaitlab`."""
+
+
+def main() -> None:
+    """Run the command line."""
+    raise SystemExit(2)
