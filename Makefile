@@ -1,0 +1,56 @@
+# Everything a developer or a curious person runs. Needs python3 with venv, and make.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-warn-script-location -c constraints.txt
+DEMO_OUT ?= out/demo
+
+# Linear solvers repeat bit for bit only with one thread (design/numerics.md, finding 5).
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test test-slow check format evidence wheel clean
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
+
+demo: $(VENV)/.installed ## install, analyse the demo recordings, print the weights and the report's path
+	$(BIN)/gaitlab demo --out $(DEMO_OUT)
+
+test: $(VENV)/.installed-dev ## all tests but the slow ones
+	$(BIN)/python -m pytest -m "not slow"
+
+test-slow: $(VENV)/.installed-dev ## samples of what is heavy
+	$(BIN)/python -m pytest -m slow
+
+check: $(VENV)/.installed-dev ## linters, types, layers, house style
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+	$(BIN)/python -m pytest -q tests/test_house_style.py
+
+format: $(VENV)/.installed-dev ## rewrite the sources in the house's format
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+evidence: $(VENV)/.installed-dev ## measure every "Must hold" line, write benchmarks/evidence/*.csv
+	$(BIN)/python benchmarks/evidence.py
+
+wheel: $(VENV)/.installed-dev ## build dist/*.whl, demo recordings included
+	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
+
+clean: ## forget the environment and the outputs
+	rm -rf $(VENV) out dist build
+
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
+	$(INSTALL) -e .
+	touch $@
+
+$(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python
+	$(INSTALL) -e '.[dev]'
+	touch $@ $(VENV)/.installed
