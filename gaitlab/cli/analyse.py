@@ -1,0 +1,79 @@
+"""`gaitlab analyse`: C3D in, result folder out."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..clinical.document import SIDES
+from ..errors import InvalidSubject, NotConverged
+from ..pipelines.analyse import Sources, analyse_files
+from ..pipelines.options import THESIS_CRITERIA, AnalysisOptions
+from ..pipelines.output import make_folder, write_analysis
+from ..report.html import write_report
+from .progress import progress_bars
+from .summary import print_summary
+
+
+def analyse(  # noqa: PLR0913 - one argument per option of the command
+    walks: Annotated[list[Path], typer.Argument(help="Walking trials, C3D.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="Folder to write into; made if absent.")],
+    static: Annotated[Path | None, typer.Option(help="Static trial of the same session, C3D.")] = None,
+    mass: Annotated[float | None, typer.Option(help="Body mass [kg]; replaces the files'.")] = None,
+    height: Annotated[float | None, typer.Option(help="Body height [m].")] = None,
+    leg_length: Annotated[float | None, typer.Option(help="Leg length, both sides [m].")] = None,
+    knee_width: Annotated[float | None, typer.Option(help="Knee width, both sides [m].")] = None,
+    ankle_width: Annotated[float | None, typer.Option(help="Ankle width, both sides [m].")] = None,
+    parameter: Annotated[
+        list[str] | None, typer.Option(help="Any other, as name=value in SI units: left_leg_length=0.82.")
+    ] = None,
+    criteria: Annotated[str, typer.Option(help="Criteria, separated by commas.")] = ",".join(THESIS_CRITERIA),
+    weights: Annotated[bool, typer.Option(help="Compute the walk and its weights.")] = True,
+    seed: Annotated[int, typer.Option(help="Seed of everything random.", min=0)] = 0,
+    redetect_events: Annotated[bool, typer.Option(help="Detect events although the file has some.")] = False,
+    file_offsets: Annotated[
+        bool, typer.Option(help="Use the static offsets stored in the file, not those computed.")
+    ] = False,
+) -> None:
+    """Turn a static and walking trials into angles, events, a model, a walk and the weights of its criteria."""
+    both = {"leg_length": leg_length, "knee_width": knee_width, "ankle_width": ankle_width}
+    options = AnalysisOptions(
+        parameters=_parameters({"mass": mass, "height": height}, both, parameter or []),
+        criteria=tuple(name.strip() for name in criteria.split(",") if name.strip()),
+        weights=weights,
+        seed=seed,
+        redetect_events=redetect_events,
+        static_offsets="file" if file_offsets else "computed",
+    )
+    run_analysis(Sources(static=static, walks=tuple(walks)), options, out)
+
+
+def run_analysis(sources: Sources, options: AnalysisOptions, out: Path) -> None:
+    """Analyse, write, report and print; raises NotConverged after writing when something did not converge."""
+    make_folder(out)
+    with progress_bars() as progress:
+        analysis = analyse_files(sources, options, progress)
+        folders = write_analysis(analysis, out)
+        for folder in folders:
+            write_report(folder)
+    print_summary(analysis.document, out)
+    if analysis.not_converged:
+        raise NotConverged(f"{analysis.not_converged}; the results so far are in {out}")
+
+
+def _parameters(
+    single: dict[str, float | None], both: dict[str, float | None], assignments: list[str]
+) -> dict[str, float]:
+    parameters = {name: value for name, value in single.items() if value is not None}
+    for name, value in both.items():
+        if value is not None:
+            parameters |= {f"{side}_{name}": value for side in SIDES}
+    return parameters | dict(_assignment(text) for text in assignments)
+
+
+def _assignment(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name.strip(), float(value)
+    except ValueError as error:
+        raise InvalidSubject(f"--parameter {text} is not name=number: write for instance left_leg_length=0.82") from error
