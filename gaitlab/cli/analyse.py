@@ -8,7 +8,8 @@ import typer
 from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotConverged
 from ..pipelines.analyse import Sources, analyse_files
-from ..pipelines.options import THESIS_CRITERIA, AnalysisOptions
+from ..pipelines.options import AnalysisOptions
+from ..walking.criteria import THESIS
 from ..pipelines.output import make_folder, write_analysis
 from ..report.html import write_report
 from .progress import progress_bars
@@ -27,7 +28,7 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     parameter: Annotated[
         list[str] | None, typer.Option(help="Any other, as name=value in SI units: left_leg_length=0.82.")
     ] = None,
-    criteria: Annotated[str, typer.Option(help="Criteria, separated by commas.")] = ",".join(THESIS_CRITERIA),
+    criteria: Annotated[str, typer.Option(help="Criteria, separated by commas.")] = ",".join(THESIS),
     weights: Annotated[bool, typer.Option(help="Compute the walk and its weights.")] = True,
     seed: Annotated[int, typer.Option(help="Seed of everything random.", min=0)] = 0,
     redetect_events: Annotated[bool, typer.Option(help="Detect events although the file has some.")] = False,
