@@ -1,0 +1,254 @@
+"""Primal-dual interior-point method for problems whose KKT system is banded in time.
+
+Line-search filter method of Wächter and Biegler (Math. Program. 106, 2006) with slacks for the inequalities, the
+inertia-free curvature test of Chiang and Zavala (Comput. Optim. Appl. 64, 2016), and one banded LU factorisation per
+iteration. The final barrier parameter is a setting: a small positive one makes the solution a smooth function of
+the problem's parameters, which the sensitivities in `nlp.sensitivity` rely on.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from .banded import KKTAssembly
+from .filter_search import Filter, Merit, backtrack
+from .sparse_problem import Derivatives, SparseProblem, Values
+from .sparse_solution import SparseSolution, Status, certify
+
+
+class Iterate(NamedTuple):
+    """Primal and dual unknowns."""
+
+    w: np.ndarray
+    s: np.ndarray
+    lam_g: np.ndarray
+    lam_c: np.ndarray
+
+
+class Step(NamedTuple):
+    """Newton direction in all unknowns."""
+
+    w: np.ndarray
+    s: np.ndarray
+    lam_g: np.ndarray
+    lam_c: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class InteriorPoint:
+    """Settings of the method; defaults from Wächter and Biegler (2006) unless said otherwise."""
+
+    tol: float = 1e-8
+    """Tolerance on the KKT error of the barrier problem, absolute in the problem's own scaling."""
+    mu_initial: float = 1e-2
+    mu_final: float = 1e-9
+    """Barrier parameter at which the method stops."""
+    max_iter: int = 300
+    kappa_error: float = 10.0
+    """The barrier parameter falls when the KKT error is below this multiple of it."""
+    mu_linear: float = 0.2
+    mu_power: float = 1.5
+    fraction_to_boundary: float = 0.99
+    curvature: float = 1e-10
+    """Least curvature of the Lagrangian along an accepted step."""
+
+    def solve(
+        self,
+        problem: SparseProblem,
+        start: SparseSolution | np.ndarray,
+        progress: Callable[[int, float], None] | None = None,
+    ) -> SparseSolution:
+        """Solve from a point w, shape (n_w,), or from an earlier solution (warm start with its multipliers).
+
+        `progress(iteration, residual)` may raise `errors.Cancelled`. Not converging is a result: see `status`.
+        """
+        return _Run(self, problem, progress).solve(start)
+
+
+class _Run:
+    """One solve: the settings, the problem and what changes from iteration to iteration."""
+
+    def __init__(
+        self, method: InteriorPoint, problem: SparseProblem, progress: Callable[[int, float], None] | None
+    ) -> None:
+        self.method, self.problem, self.progress = method, problem, progress
+        self.structure = problem.structure
+        self.assembly = KKTAssembly(self.structure)
+        self.mu = method.mu_initial
+        self.delta = 0.0
+        self.filter = Filter()
+        self.failures = 0
+
+    def solve(self, start: SparseSolution | np.ndarray) -> SparseSolution:
+        """Iterate until converged, stalled or out of iterations."""
+        x = self._first(start)
+        values = self.problem.values(x.w)
+        for iteration in range(self.method.max_iter + 1):
+            derivatives = self.problem.derivatives(x.w, x.lam_g, x.lam_c)
+            if not _finite(values, derivatives):
+                return self._end(x, iteration, Status.INVALID_NUMBER)
+            self._lower_barrier(x, values, derivatives)
+            error = self._error(x, values, derivatives, self.method.mu_final)
+            if self.progress is not None:
+                self.progress(iteration, error)
+            if error <= self.method.tol and self.mu <= self.method.mu_final:
+                return self._end(x, iteration, Status.SOLVED)
+            moved = self._iterate(x, values, derivatives)
+            if moved is None:
+                return self._end(x, iteration, Status.STALLED)
+            x, values = moved
+        return self._end(x, self.method.max_iter, Status.ITERATION_LIMIT)
+
+    def _first(self, start: SparseSolution | np.ndarray) -> Iterate:
+        if isinstance(start, SparseSolution):
+            floor = np.sqrt(self.mu) * 1e-2
+            c = self.problem.values(start.w).c
+            s = np.maximum(np.maximum(c, start.s), np.minimum(floor, self.mu / np.maximum(start.lam_c, 1e-12)))
+            return Iterate(start.w, s, start.lam_g, np.clip(start.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s))
+        s = np.maximum(self.problem.values(start).c, 1e-2)
+        return Iterate(start.copy(), s, np.zeros(self.structure.n_g), self.mu / s)
+
+    def _lower_barrier(self, x: Iterate, values: Values, derivatives: Derivatives) -> None:
+        method = self.method
+        while self.mu > method.mu_final:
+            if self._error(x, values, derivatives, self.mu) > method.kappa_error * self.mu:
+                return
+            self.mu = max(method.mu_final, min(method.mu_linear * self.mu, self.mu**method.mu_power))
+            self.filter = Filter()
+
+    def _stationarity(self, x: Iterate, derivatives: Derivatives) -> np.ndarray:
+        s = self.structure
+        products = self.assembly
+        return (
+            derivatives.grad
+            + products.multiply_transposed(s.jac_g, derivatives.jac_g, x.lam_g, s.n_w)
+            - products.multiply_transposed(s.jac_c, derivatives.jac_c, x.lam_c, s.n_w)
+        )
+
+    def _error(self, x: Iterate, values: Values, derivatives: Derivatives, mu: float) -> float:
+        n = len(x.lam_g) + len(x.lam_c)
+        # Large multipliers make the absolute stationarity meaningless: the scaling of Wächter and Biegler, eq. (5).
+        scale = max(100.0, (np.abs(x.lam_g).sum() + x.lam_c.sum()) / max(n, 1)) / 100.0
+        return max(
+            _norm(self._stationarity(x, derivatives)) / scale,
+            _norm(values.g),
+            _norm(values.c - x.s),
+            _norm(x.s * x.lam_c - mu) / scale,
+        )
+
+    def _iterate(self, x: Iterate, values: Values, derivatives: Derivatives) -> tuple[Iterate, Values] | None:
+        for _ in range(12):
+            step = self._direction(x, values, derivatives)
+            if step is None:
+                return None
+            moved = self._search(x, values, derivatives, step)
+            if moved is not None:
+                self.failures = 0
+                self.delta = 0.0 if self.delta < 1e-7 else self.delta / 8.0
+                return moved
+            self.failures += 1
+            self.delta = max(1e-4, 10.0 * self.delta)
+        return self._restore(x, values, derivatives)
+
+    def _direction(self, x: Iterate, values: Values, derivatives: Derivatives) -> Step | None:
+        """Newton direction with enough curvature, or None."""
+        delta = self.delta
+        sigma = x.lam_c / x.s
+        for delta_g in (0.0, *([1e-8] * 24)):
+            factors = self.assembly.factorise(
+                (derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma, (delta, delta_g)
+            )
+            if factors is not None:
+                step = self._solve_newton(x, values, derivatives, factors.solve)
+                if self._curved(step, x, values, derivatives, delta):
+                    self.delta = delta
+                    return step
+            delta = max(1e-4, 8.0 * delta) if factors is not None or delta_g > 0.0 else delta
+            if delta > 1e12:
+                break
+        return None
+
+    def _solve_newton(
+        self, x: Iterate, values: Values, derivatives: Derivatives, solve: Callable[[np.ndarray], np.ndarray]
+    ) -> Step:
+        st, products = self.structure, self.assembly
+        residual_c = values.c - x.s
+        pull = self.mu / x.s - x.lam_c - x.lam_c / x.s * residual_c
+        top = -self._stationarity(x, derivatives) + products.multiply_transposed(
+            st.jac_c, derivatives.jac_c, pull, st.n_w
+        )
+        solution = solve(np.concatenate([top, -values.g]))
+        dw, dlam = solution[: st.n_w], solution[st.n_w :]
+        ds = products.multiply(st.jac_c, derivatives.jac_c, dw, st.n_c) + residual_c
+        return Step(dw, ds, dlam, self.mu / x.s - x.lam_c - x.lam_c / x.s * ds)
+
+    def _curved(self, step: Step, x: Iterate, values: Values, derivatives: Derivatives, delta: float) -> bool:
+        st, products = self.structure, self.assembly
+        if not np.all(np.isfinite(step.w)):
+            return False
+        jac_step = products.multiply(st.jac_c, derivatives.jac_c, step.w, st.n_c)
+        quadratic = step.w @ products.multiply(st.hess, derivatives.hess, step.w, st.n_w)
+        quadratic += x.lam_c / x.s @ jac_step**2 + delta * (step.w @ step.w)
+        slack = max(-float((x.lam_g + step.lam_g) @ values.g), 0.0)
+        return quadratic + slack >= self.method.curvature * (step.w @ step.w)
+
+    def _search(
+        self, x: Iterate, values: Values, derivatives: Derivatives, step: Step
+    ) -> tuple[Iterate, Values] | None:
+        tau = max(self.method.fraction_to_boundary, 1.0 - self.mu)
+        alpha_primal, alpha_dual = _largest(x.s, step.s, tau), _largest(x.lam_c, step.lam_c, tau)
+        merit = Merit(values, x.s, self.mu)
+        slope = float(derivatives.grad @ step.w - self.mu * np.sum(step.s / x.s))
+
+        def trial(alpha: float) -> tuple[np.ndarray, np.ndarray, Values]:
+            w, s = x.w + alpha * step.w, x.s + alpha * step.s
+            return w, s, self.problem.values(w)
+
+        found = backtrack(self.filter, merit, slope, trial, alpha_primal)
+        if found is None:
+            return None
+        alpha, w, s, new_values = found
+        lam_c = x.lam_c + alpha_dual * step.lam_c
+        lam_c = np.clip(lam_c, 1e-10 * self.mu / s, 1e10 * self.mu / s)
+        return Iterate(w, s, x.lam_g + alpha * step.lam_g, lam_c), new_values
+
+    def _restore(self, x: Iterate, values: Values, derivatives: Derivatives) -> tuple[Iterate, Values] | None:
+        """Least-norm steps towards the constraints where the filter blocks every step."""
+        before = Merit(values, x.s, self.mu).violation
+        if before <= self.method.tol:
+            return None
+        plain = derivatives._replace(grad=np.zeros_like(x.w), hess=np.zeros_like(derivatives.hess))
+        calm = x._replace(lam_g=np.zeros_like(x.lam_g))
+        factors = self.assembly.factorise((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s, (1.0, 1e-10))
+        if factors is None:
+            return None
+        step = self._solve_newton(calm, values, plain, factors.solve)
+        alpha = _largest(x.s, step.s, self.method.fraction_to_boundary)
+        for _ in range(20):
+            w, s = x.w + alpha * step.w, x.s + alpha * step.s
+            new = self.problem.values(w)
+            if Merit(new, s, self.mu).violation < (1.0 - 1e-2 * alpha) * before:
+                self.filter, self.delta = Filter(), 0.0
+                return Iterate(w, s, x.lam_g, np.clip(x.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s)), new
+            alpha /= 2.0
+        return None
+
+    def _end(self, x: Iterate, iterations: int, status: Status) -> SparseSolution:
+        return certify(self.problem, x, mu=self.mu, iterations=iterations, status=status)
+
+
+def _largest(value: np.ndarray, step: np.ndarray, tau: float) -> float:
+    """Largest alpha <= 1 with value + alpha step >= (1 - tau) value."""
+    falling = step < 0.0
+    return float(min(1.0, np.min(-tau * value[falling] / step[falling], initial=1.0)))
+
+
+def _finite(values: Values, derivatives: Derivatives) -> bool:
+    arrays = (values.g, values.c, derivatives.grad, derivatives.jac_g, derivatives.jac_c, derivatives.hess)
+    return bool(np.isfinite(values.f)) and all(np.all(np.isfinite(a)) for a in arrays)
+
+
+def _norm(v: np.ndarray) -> float:
+    return float(np.max(np.abs(v), initial=0.0))

@@ -1,0 +1,74 @@
+"""Sparse nonlinear programs whose unknowns can be ordered along time."""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+
+class Pattern(NamedTuple):
+    """Positions of the entries of a sparse matrix; repeated positions are summed."""
+
+    rows: np.ndarray
+    """Row of each entry, shape (nnz,)."""
+    cols: np.ndarray
+    """Column of each entry, shape (nnz,)."""
+
+
+class Values(NamedTuple):
+    """Objective and constraints at one point."""
+
+    f: float
+    g: np.ndarray
+    """Equality constraints, shape (n_g,)."""
+    c: np.ndarray
+    """Inequality constraints, c >= 0, shape (n_c,)."""
+
+
+class Derivatives(NamedTuple):
+    """First and second derivatives at one point, entries in the order of the patterns."""
+
+    grad: np.ndarray
+    """Gradient of the objective, shape (n_w,)."""
+    jac_g: np.ndarray
+    """Entries of the Jacobian of g, shape (nnz_g,)."""
+    jac_c: np.ndarray
+    """Entries of the Jacobian of c, shape (nnz_c,)."""
+    hess: np.ndarray
+    """Entries of the Hessian of f + lam_g' g - lam_c' c, both triangles, shape (nnz_h,)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SparseStructure:
+    """Sizes, sparsity and an order of the unknowns in which the KKT matrix is banded."""
+
+    n_w: int
+    n_g: int
+    n_c: int
+    jac_g: Pattern
+    jac_c: Pattern
+    hess: Pattern
+    order: np.ndarray
+    """Order of (w, lam_g) along time: a permutation, shape (n_w + n_g,)."""
+
+
+class SparseProblem(Protocol):
+    r"""Nonlinear program with inequalities of one sign.
+
+    .. math::
+
+        \underset{w}{\text{minimize}} \; f(w) \quad \text{subject to} \quad g(w) = 0, \; c(w) \ge 0
+    """
+
+    @property
+    def structure(self) -> SparseStructure:
+        """Sizes and sparsity, the same for every call."""
+        ...
+
+    def values(self, w: np.ndarray) -> Values:
+        """Evaluate objective and constraints at w, shape (n_w,)."""
+        ...
+
+    def derivatives(self, w: np.ndarray, lam_g: np.ndarray, lam_c: np.ndarray) -> Derivatives:
+        """Evaluate the derivatives at w, shape (n_w,), for multipliers of shapes (n_g,) and (n_c,)."""
+        ...

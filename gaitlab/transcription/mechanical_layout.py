@@ -1,0 +1,141 @@
+"""Where the unknowns and constraints of a collocated mechanical problem lie, for one sequence of contacts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import ProblemError
+from ..ocp.mechanical import ContactStage
+
+
+@dataclass(frozen=True, kw_only=True)
+class Boundary:
+    """Which entries of the first and last state x = (q, v) are given."""
+
+    initial: tuple[int, ...] = ()
+    final: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactRow:
+    """One scalar contact condition sum_j sign_j y_j(x_node_j) = 0 or >= 0, y = (positions, velocities)."""
+
+    component: int
+    """Index into (positions, velocities)."""
+    node: int
+    minus_node: int = -1
+    """Node whose value is subtracted, -1 for none."""
+
+
+@dataclass(frozen=True)
+class MechanicalLayout:
+    """Index tables. Unknowns w = (x_0 ... x_N, then per interval and Gauss point the active forces)."""
+
+    stages: tuple[ContactStage, ...]
+    n_q: int
+    n_f: int
+    n_r: int
+    boundary: Boundary
+
+    def __post_init__(self) -> None:
+        if not self.stages:
+            raise ProblemError("a problem needs at least one stage, got none")
+
+    @property
+    def n_intervals(self) -> int:
+        """Number of intervals N over all stages."""
+        return sum(s.n_intervals for s in self.stages)
+
+    def stage_of_interval(self) -> np.ndarray:
+        """Stage index of each interval, shape (N,)."""
+        return np.repeat(np.arange(len(self.stages)), [s.n_intervals for s in self.stages])
+
+    def interval_lengths(self) -> np.ndarray:
+        """Length of each interval [s], shape (N,)."""
+        return np.concatenate([np.full(s.n_intervals, s.duration / s.n_intervals) for s in self.stages])
+
+    def node_times(self) -> np.ndarray:
+        """Times of the nodes [s], shape (N + 1,)."""
+        return np.concatenate([[0.0], np.cumsum(self.interval_lengths())])
+
+    def force_index(self) -> np.ndarray:
+        """Index in w of each force, -1 where inactive, shape (N, 2, n_f)."""
+        table = np.full((self.n_intervals, 2, self.n_f), -1, dtype=np.int64)
+        active = np.zeros_like(table, dtype=bool)
+        for k, stage in enumerate(self.stage_of_interval()):
+            active[k][:, list(self.stages[stage].active)] = True
+        table[active] = 2 * self.n_q * (self.n_intervals + 1) + np.arange(active.sum())
+        return table
+
+    def point_index(self) -> np.ndarray:
+        """Index in w of (q0, v0, q1, v1, f) of each Gauss point, shape (N, 2, 4 n_q + n_f); -1 where inactive."""
+        n, width = self.n_intervals, 4 * self.n_q
+        x = 2 * self.n_q * np.arange(n)[:, None] + np.arange(width)  # (N, 4 n_q): neighbouring nodes are adjacent
+        return np.concatenate([np.repeat(x[:, None], 2, axis=1), self.force_index()], axis=2)
+
+    def contact_equalities(self) -> list[ContactRow]:
+        """Conditions that hold points in contact in place, and those that make landings soft."""
+        rows: list[ContactRow] = []
+        node, n = 0, self.n_intervals
+        fixed = set(self.boundary.initial), set(self.boundary.final)
+        q_fixed = set(range(self.n_q)) <= fixed[1]
+        v_fixed = set(range(self.n_q, 2 * self.n_q)) <= fixed[1]
+        for index, stage in enumerate(self.stages):
+            if index > 0 or len(fixed[0]) < 2 * self.n_q:
+                rows += self._start_rows(index, node)
+            for k in range(node, node + stage.n_intervals):
+                last = k + 1 == n
+                # A given last posture already stands on the ground: repeating it would make the rows dependent.
+                held = [i for i in stage.active if not (last and q_fixed and i in self._heights())]
+                rows += [ContactRow(component=i, node=k + 1, minus_node=k) for i in held]
+                if not (last and v_fixed):
+                    rows += [ContactRow(component=self.n_f + i, node=k + 1) for i in stage.active]
+            node += stage.n_intervals
+        return rows
+
+    def _heights(self) -> set[int]:
+        return {i for s in self.stages for i in (*s.grounded, *s.clear)}
+
+    def _start_rows(self, index: int, node: int) -> list[ContactRow]:
+        stage = self.stages[index]
+        q_given = index == 0 and set(range(self.n_q)) <= set(self.boundary.initial)
+        grounded = () if q_given else stage.grounded
+        rows = [ContactRow(component=i, node=node) for i in grounded]
+        return rows + [ContactRow(component=self.n_f + i, node=node) for i in stage.landing]
+
+    def clearances(self) -> list[ContactRow]:
+        """Heights that must not be negative, at the nodes where they are free."""
+        rows: list[ContactRow] = []
+        node, last = 0, self.n_intervals
+        for index, stage in enumerate(self.stages):
+            end = node + stage.n_intervals
+            lands = set(self.stages[index + 1].grounded) if index + 1 < len(self.stages) else set[int]()
+            for k in range(node + 1, end + 1):
+                if k == last and self.boundary.final:
+                    continue
+                free = [i for i in stage.clear if not (k == end and i in lands)]
+                rows += [ContactRow(component=i, node=k) for i in free]
+            node = end
+        return rows
+
+    def cone_rows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Force inequalities as (row, index in w, coefficient) triplets, each of shape (nnz,)."""
+        index, stage_of = self.force_index(), self.stage_of_interval()
+        rows: list[np.ndarray] = []
+        columns: list[np.ndarray] = []
+        values: list[np.ndarray] = []
+        count = 0
+        for k, j in np.ndindex(self.n_intervals, 2):
+            cone = self.stages[stage_of[k]].force_cone
+            r, i = np.nonzero(cone)
+            rows.append(count + r)
+            columns.append(index[k, j, i])
+            values.append(cone[r, i])
+            count += len(cone)
+        return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+
+
+def time_order(keys_w: np.ndarray, keys_g: Sequence[float] | np.ndarray) -> np.ndarray:
+    """Order of the unknowns (w, lam_g) by time keys of shapes (n_w,) and (n_g,); shape (n_w + n_g,)."""
+    return np.argsort(np.concatenate([keys_w, np.asarray(keys_g, dtype=float)]), kind="stable")
