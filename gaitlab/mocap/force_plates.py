@@ -10,6 +10,7 @@ import numpy as np
 
 from gaitlab.mocap.raw import RawRecording
 from gaitlab.mocap.recording import ForcePlate
+from gaitlab.signal.resampling import centred_means
 
 LOADED = 100.0  # N; a plate under a foot carries more, unloaded plates drift by less
 Wrench = tuple[np.ndarray, np.ndarray]
@@ -173,22 +174,15 @@ def centre_of_pressure(plate: ForcePlate, smallest: float = 20.0) -> np.ndarray:
     return plate.corners.mean(axis=0) + local @ rotation.T
 
 
-def at_video_frames(samples: np.ndarray, ratio: int) -> np.ndarray:
-    """Centred means of `ratio` analogue samples around each video frame.
+def at_video_frames(plate: ForcePlate, rate: float, n_frames: int) -> ForcePlate:
+    """The plate with one sample per video frame: the centred mean of the samples around it.
 
     Args:
-        samples: Shape (n_frames * ratio, ...).
-        ratio: Analogue samples per video frame.
-
-    Returns:
-        Shape (n_frames, ...). Frame i is the mean over samples i ratio - ratio/2 ... i ratio + ratio/2 (the two ends
-        weighted by one half when ratio is even), fewer at the ends of the trial.
+        plate: The plate at its own rate.
+        rate: Video frames per second [Hz].
+        n_frames: Number of video frames.
     """
-    weights = np.ones(ratio + 1 - ratio % 2)
-    if ratio % 2 == 0 and ratio > 0:
-        weights[[0, -1]] = 0.5
-    half = len(weights) // 2
-    flat = samples.reshape(len(samples), -1)
-    totals = np.apply_along_axis(np.convolve, 0, flat, weights, "full")[half : half + len(flat)]
-    shares = np.convolve(np.ones(len(flat)), weights, "full")[half : half + len(flat)]
-    return (totals / shares[:, None])[::ratio].reshape(-1, *samples.shape[1:])
+    ratio = max(int(round(plate.rate / rate)), 1)
+    force = centred_means(plate.force, ratio)[:n_frames]
+    moment = centred_means(plate.moment, ratio)[:n_frames]
+    return ForcePlate(corners=plate.corners, force=force, moment=moment, rate=rate)

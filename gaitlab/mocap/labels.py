@@ -126,7 +126,7 @@ LOWER_BODY: tuple[str, ...] = tuple(
 
 
 def require_markers(name: str, markers: Mapping[str, np.ndarray], required: Sequence[str] = LOWER_BODY) -> None:
-    """Raises InvalidRecording unless all required markers, and SACR or LPSI with RPSI, are there and seen at least once.
+    """Raises InvalidRecording unless all required markers, and SACR or LPSI with RPSI, are there and seen once.
 
     Args:
         name: The trial's name, for the message.

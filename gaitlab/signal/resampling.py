@@ -1,0 +1,73 @@
+"""Resampling: cubic interpolation between valid samples, gait cycles on 101 samples, means of analogue samples."""
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from gaitlab.signal.runs import runs, valid_rows
+
+CYCLE_SAMPLES = 101  # 0, 1, ... 100 % (design: clinical conventions)
+SNAP = 1e-6  # samples; times this close to the end of a run belong to it
+
+
+def resample(x: np.ndarray, rate: float, at: np.ndarray) -> np.ndarray:
+    """Values at the given times, by a cubic spline through each run of valid samples.
+
+    Args:
+        x: Samples at 0, 1 / rate, 2 / rate ..., shape (n, ...); NaN where missing.
+        rate: Samples per second [Hz].
+        at: Times [s] from the first sample, shape (m,).
+
+    Returns:
+        Unit of `x`, shape (m, ...); NaN outside the samples and inside gaps: nothing is invented.
+    """
+    position = np.asarray(at, dtype=float) * rate
+    y = np.full((len(position), *x.shape[1:]), np.nan)
+    for start, end in runs(valid_rows(x)):
+        inside = (position >= start - SNAP) & (position <= end - 1 + SNAP)
+        if end - start == 1:
+            y[inside] = x[start]
+        elif inside.any():
+            y[inside] = CubicSpline(np.arange(start, end), x[start:end], axis=0)(position[inside])
+    return y
+
+
+def normalise_cycle(x: np.ndarray, rate: float, start: float, end: float, n_samples: int = CYCLE_SAMPLES) -> np.ndarray:
+    """Samples of one gait cycle, 0 to 100 % in equal steps of time.
+
+    Args:
+        x: Samples, shape (n, ...); NaN where missing.
+        rate: Samples per second [Hz].
+        start: Beginning of the cycle [s] from the first sample.
+        end: End of the cycle [s].
+        n_samples: Number of samples, both ends included.
+
+    Returns:
+        Unit of `x`, shape (n_samples, ...).
+    """
+    return resample(x, rate, np.linspace(start, end, n_samples))
+
+
+def centred_means(samples: np.ndarray, ratio: int) -> np.ndarray:
+    """Centred means of `ratio` fast samples around each slow one; a one-sided mean would delay by half a frame.
+
+    Args:
+        samples: Fast samples, the first one simultaneous with the first slow one, shape (n * ratio, ...).
+        ratio: Fast samples per slow one.
+
+    Returns:
+        Shape (n, ...). The window is ratio samples wide (when even, ratio + 1 with the ends weighted by one half),
+        narrower at the ends of the trial.
+    """
+    weights = np.ones(ratio + 1 - ratio % 2)
+    if ratio % 2 == 0:
+        weights[[0, -1]] = 0.5
+    half = len(weights) // 2
+    n = len(samples)
+    padded = np.zeros((n + 2 * half, *samples.shape[1:]))
+    padded[half : half + n] = samples
+    present = np.zeros(n + 2 * half)
+    present[half : half + n] = 1.0
+    centres = np.arange(0, n, ratio)
+    total = sum(weight * padded[centres + k] for k, weight in enumerate(weights))
+    share = sum(weight * present[centres + k] for k, weight in enumerate(weights))
+    return np.asarray(total) / np.asarray(share).reshape(-1, *([1] * (samples.ndim - 1)))
