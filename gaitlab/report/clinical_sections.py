@@ -1,0 +1,175 @@
+"""Sections of the clinical part: who and what, kinematics page, spatiotemporal table, events."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..clinical.cycle_average import time_normalise
+from ..clinical.document import CURVES, SIDES
+from ..mocap.cycles import cycles
+from .kinematics_figure import Marks, average_figure, consistency_figure
+from .markup import ABSENT, facts, fixed, label, missing, paragraph, plain, table, tag
+from .result import Result, first_real, mapping, real, sequence
+from .walk_file import Angles
+
+_CONVENTIONS = (
+    "Conventions: angles in degrees; pelvic tilt anterior +, obliquity up +, rotation internal +; hip flexion +, "
+    "adduction +, internal rotation +; knee flexion +; ankle dorsiflexion +; foot progression internal +. Left is red, "
+    "right is blue."
+)
+
+
+def subject_section(result: Result) -> str:
+    """Subject and input files with their fingerprints."""
+    members = result.part("subject")
+    known = {key: value for key, value in members.items() if key not in {"segments", "assumed"}}
+    subject = (
+        facts(known, "Subject (SI units: lengths in m, angles in rad)")
+        if known
+        else missing("subject", "result.json says nothing about it")
+    )
+    assumed = ", ".join(str(name) for name in sequence(members.get("assumed")))
+    estimated = paragraph(f"Estimated, neither measured nor given: {assumed}.", "alert") if assumed else ""
+    return tag("section", tag("h2", "Subject and inputs") + subject + estimated + _segments(members) + _inputs(result))
+
+
+def _segments(subject: Mapping[str, object]) -> str:
+    segments = [mapping(item) for item in sequence(subject.get("segments"))]
+    rows = [
+        (
+            str(s.get("name") or "unnamed").replace("_", " "),
+            fixed(real(s.get("mass_kg")), 2),
+            fixed(real(s.get("length_m")), 3),
+        )
+        for s in segments
+    ]
+    return table(("segment", "mass [kg]", "length [m]"), rows, "Model of the body") if rows else ""
+
+
+def _inputs(result: Result) -> str:
+    files = [mapping(item) for item in result.parts("inputs")]
+    if not files:
+        return missing("input files", "result.json lists none")
+    keys = list(dict.fromkeys(key for file in files for key in file if key not in {"name", "file", "path", "sha256"}))
+    rows = [
+        (
+            str(file.get("name") or file.get("file") or file.get("path") or "unnamed"),
+            *(plain(file.get(key)) for key in keys),
+            str(file.get("sha256") or ABSENT),
+        )
+        for file in files
+    ]
+    return table(("File", *(label(key) for key in keys), "sha256"), rows, "Input files", "inputs")
+
+
+def marks_of(result: Result) -> dict[str, Marks]:
+    """Foot off and the opposite foot's events of each side [%], from the spatiotemporal table."""
+    sides = result.part("spatiotemporal")
+    return {side: _marks(mapping(sides.get(side))) for side in SIDES if mapping(sides.get(side))}
+
+
+def _marks(side: Mapping[str, object]) -> Marks:
+    values = mapping(side.get("mean")) or side
+    return Marks(
+        foot_off=first_real(values, ("foot_off_percent", "stance_percent")),
+        opposite_foot_off=first_real(values, ("opposite_foot_off_percent",)),
+        opposite_foot_strike=first_real(values, ("opposite_foot_strike_percent",)),
+    )
+
+
+def kinematics_section(result: Result, angles: Angles | None) -> str:
+    """Average page, and the consistency page with every cycle where there is more than one."""
+    title = tag("h2", "Kinematics")
+    if not any(result.kinematics.get(name) for name in CURVES):
+        why = "no side has a complete cycle with all markers" if result.kinematics else "result.json holds none"
+        return tag("section", title + missing("joint angles over the gait cycle", why))
+    absent = [
+        f"{name.replace('_', ' ')} ({side})"
+        for name in CURVES
+        for side in SIDES
+        if side not in result.kinematics.get(name, {})
+    ]
+    gap = missing(", ".join(absent), "result.json has no complete cycle of them") if absent else ""
+    marks = marks_of(result)
+    average = average_figure(result.kinematics, marks)
+    body = paragraph(_cycles_used(result), "lead") + average + paragraph(_CONVENTIONS, "note") + gap
+    return tag("section", title + body, "page") + _consistency(result, angles, marks)
+
+
+def _cycles_used(result: Result) -> str:
+    counts = {
+        side: max(
+            (c.n_cycles for curves in result.kinematics.values() if (c := curves.get(side)) and c.n_cycles),
+            default=None,
+        )
+        for side in SIDES
+    }
+    parts = [f"{side} {count}" for side, count in counts.items() if count is not None]
+    return f"Number of cycles: {', '.join(parts)}." if parts else "Number of cycles: not stated."
+
+
+def _consistency(result: Result, angles: Angles | None, marks: Mapping[str, Marks]) -> str:
+    title = tag("h2", "All cycles")
+    if angles is None:
+        return tag("section", title + missing("every cycle", "angles.csv is absent"))
+    curves = every_cycle(result, angles)
+    count = max((len(values) for sides in curves.values() for values in sides.values()), default=0)
+    if count < 2:
+        why = "there is no side with two complete cycles in this trial, so the average above says it all"
+        return tag("section", title + missing("every cycle", why))
+    return tag("section", title + consistency_figure(curves, marks), "page")
+
+
+def every_cycle(result: Result, angles: Angles) -> dict[str, dict[str, list[np.ndarray]]]:
+    """Curves of all cycles [deg], shape (101,) each: curve name to side to cycles."""
+    if len(angles.time) < 2:
+        return {}
+    rate = (len(angles.time) - 1) / float(angles.time[-1] - angles.time[0])
+    curves = dict[str, dict[str, list[np.ndarray]]]()
+    for name in CURVES:
+        sides = dict[str, list[np.ndarray]]()
+        for side in SIDES:
+            values = angles.curves.get(f"{side}_{name}")
+            if values is not None:
+                sampled = [time_normalise(values, rate, cycle) for cycle in cycles(result.events, side)]
+                sides[side] = [samples for samples in sampled if np.any(np.isfinite(samples))]
+        curves[name] = sides
+    return curves
+
+
+def spatiotemporal_section(result: Result) -> str:
+    """Table of distances and times, left and right, with standard deviations where there are two cycles or more."""
+    title = tag("h2", "Spatiotemporal parameters")
+    sides = {side: mapping(result.part("spatiotemporal").get(side)) for side in SIDES}
+    means = {side: mapping(values.get("mean")) or values for side, values in sides.items()}
+    keys = list(dict.fromkeys(key for values in means.values() for key in values if real(values[key]) is not None))
+    keys = [key for key in keys if key != "n_cycles"]
+    if not keys:
+        return tag("section", title + missing("spatiotemporal parameters", "no side has a complete cycle"))
+    rows = [
+        (label(key), *(_with_sd(real(means[s].get(key)), real(mapping(sides[s].get("sd")).get(key))) for s in SIDES))
+        for key in keys
+    ]
+    rows.append(("Cycles", *(plain(sides[side].get("n_cycles")) for side in SIDES)))
+    norm = paragraph("No normative column: no reference data are loaded.", "note")
+    return tag("section", title + table(("", "left", "right"), rows, kind="sides") + norm)
+
+
+def _with_sd(value: float | None, sd: float | None) -> str:
+    if value is None:
+        return ABSENT
+    decimals = 1 if abs(value) >= 10.0 else 2 if abs(value) >= 1.0 else 3
+    return fixed(value, decimals) + (f" ± {fixed(sd, decimals)}" if sd is not None else "")
+
+
+def events_section(result: Result) -> str:
+    """Table of the gait events and where they come from."""
+    title = tag("h2", "Gait events")
+    if not result.events:
+        return tag("section", title + missing("gait events", "result.json lists none"))
+    rows = [
+        (f"{e.time:.3f}", e.side, e.kind.replace("_", " "), e.source)
+        for e in sorted(result.events, key=lambda e: e.time)
+    ]
+    header = ("time [s]", "side", "event", "source")
+    return tag("section", title + table(header, rows, "Times from the first stored frame"))

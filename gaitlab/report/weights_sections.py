@@ -1,0 +1,191 @@
+"""Sections of the weights: words, bars, table, fit, comparison, strides, certificate, walk."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from .markup import ABSENT, bullets, fixed, label, missing, paragraph, plain, rows_of, table, tag
+from .result import Result, Weights, mapping, real, reals, sequence
+from .walk_figure import forces_figure, joints_figure, modelled_part, phase_spans
+from .walk_file import Walk
+from .weights_figure import fit_figure, share_figure, weights_figure
+from .wording import CAVEAT, spoken, weights_in_words
+
+NOT_CONVERGED = "Not converged: what follows is the last iterate, not a result."
+_SOLVER_WORDS = {
+    "status": "Status",
+    "kkt_residual": "KKT residual, recomputed (accepted below 1e-6)",
+    "reduced_hessian": "Reduced Hessian, inertia test",
+    "iterations": "Iterations",
+    "seconds": "Time [s]",
+    "tracking_rms_rad": "Tracking of the measured walk, rms [rad]",
+    "tracking_seconds": "Time for tracking [s]",
+    "regularisation_share": "Share of the cost paid by the regularisation",
+    "message": "Message",
+}
+
+
+def weights_section(result: Result) -> str:
+    """Everything about the weights, marked where the computation did not converge."""
+    title = tag("h2", "What the walk trades off")
+    weights = result.weights
+    if weights is None or not weights.criteria:
+        why = "they were not asked for, or the computation stopped before them; see the warnings"
+        return tag("section", title + missing("weights of the criteria", why))
+    mark = "" if weights.converged else paragraph(NOT_CONVERGED, "stamp")
+    words = bullets(weights_in_words(weights), "words") + paragraph(CAVEAT, "caveat")
+    notes = [str(note) for note in sequence(weights.document.get("notes"))]
+    parts = [
+        mark,
+        words,
+        weights_figure(weights),
+        _dots_note(weights),
+        _weights_table(weights),
+        bullets(notes) if notes else "",
+    ]
+    first = tag("section", title + "".join(parts), "page" if weights.converged else "page unsolved")
+    return first + _fit(weights) + _strides(weights) + _certificate(weights)
+
+
+def _dots_note(weights: Weights) -> str:
+    words = "Bars: weight; whiskers: one standard deviation; hatched: not identifiable."
+    several = len(sequence(weights.document.get("strides"))) > 1
+    return paragraph(words + (" Dots below a bar: the weight of each single stride." if several else ""), "note")
+
+
+def _weights_table(weights: Weights) -> str:
+    rows = [
+        (
+            spoken(c.name),
+            fixed(c.weight, 3),
+            fixed(c.sd, 3),
+            ("yes" if c.identifiable else "no") + (", at zero bound" if c.at_bound else ""),
+            plain(c.raw),
+            ABSENT if c.share is None else f"{100.0 * c.share:.1f} %",
+        )
+        for c in weights.criteria
+    ]
+    header = ("criterion", "weight", "sd", "identifiable", "raw weight", "share of cost")
+    return table(header, rows, "Weights of the criteria") + _correlation(weights)
+
+
+def _correlation(weights: Weights) -> str:
+    if weights.correlation is None:
+        return missing("correlation of the weights", "result.json holds none")
+    names = [spoken(criterion.name) for criterion in weights.criteria]
+    cells = [[fixed(float(v), 2) if np.isfinite(v) else ABSENT for v in row] for row in weights.correlation]
+    rows = [(name, *row) for name, row in zip(names, cells, strict=True)]
+    return table(("", *names), rows, "Correlation of the weights' estimates")
+
+
+def _fit(weights: Weights) -> str:
+    title = tag("h2", "How well the model fits")
+    if weights.fit_rms is None:
+        return tag("section", title + missing("fit", "result.json holds none"))
+    picture = fit_figure(weights.fit_rms, weights.comparison) if weights.comparison else ""
+    absent = "" if picture else missing("comparison with other weights", "it was not computed")
+    rows = [(spoken(name), f"{np.degrees(rms):.2f}", f"{rms:.4f}") for name, rms in weights.per_joint.items()]
+    rows.append(("all", f"{np.degrees(weights.fit_rms):.2f}", f"{weights.fit_rms:.4f}"))
+    joints = table(("joint", "rms [deg]", "rms [rad]"), rows, "Model-optimal minus measured angles")
+    unseen = reals(mapping(weights.document.get("fit")).get("unseen_stride_rms_rad"))
+    others = [(name, f"{np.degrees(rms):.2f}", f"{rms:.4f}") for name, rms in unseen.items()]
+    caption = "The same weights on strides that were not used to find them"
+    seen = table(("stride", "rms [deg]", "rms [rad]"), others, caption) if others else ""
+    return tag("section", title + picture + absent + joints + seen)
+
+
+def _strides(weights: Weights) -> str:
+    strides = [mapping(stride) for stride in sequence(weights.document.get("strides"))]
+    pooled = mapping(weights.document.get("pooled"))
+    if len(strides) < 2 and not pooled:
+        return ""
+    names = [criterion.name for criterion in weights.criteria]
+    header = ("stride", *(spoken(name) for name in names), "fit rms [rad]", "status")
+    rows = [
+        (_stride_name(stride), *_numbers(stride.get("weights"), names), *_stride_state(stride)) for stride in strides
+    ]
+    if pooled:
+        rows.append(("pooled", *_numbers(pooled.get("weights"), names), ABSENT, ABSENT))
+        rows.append(("sd between strides", *_numbers(pooled.get("between_stride_sd"), names), ABSENT, ABSENT))
+    return tag("section", tag("h2", "Strides") + table(header, rows, "Weights of each stride, and pooled"))
+
+
+def _stride_name(stride: Mapping[str, object]) -> str:
+    start, end = real(stride.get("start_s")), real(stride.get("end_s"))
+    span = "" if start is None or end is None else f" {start:.2f}–{end:.2f} s"
+    return f"{stride.get('trial') or 'stride'} {stride.get('side') or ''}{span}"
+
+
+def _numbers(values: object, names: list[str]) -> list[str]:
+    return [fixed(real(mapping(values).get(name)), 3) for name in names]
+
+
+def _stride_state(stride: Mapping[str, object]) -> tuple[str, str]:
+    status = mapping(stride.get("solver")).get("status")
+    return fixed(real(stride.get("fit_rms_rad")), 4), ABSENT if status is None else str(status).replace("_", " ")
+
+
+def _certificate(weights: Weights) -> str:
+    title = tag("h2", "Certificate")
+    if not weights.solver:
+        return tag("section", title + missing("certificate", "result.json holds none, so nothing here is certified"))
+    given = {_SOLVER_WORDS.get(key, label(key)): value for key, value in weights.solver.items() if value != ""}
+    rows = [row for name, value in given.items() for row in rows_of(value, name)]
+    verdict = (
+        "Accepted: gaitlab recomputed the optimality conditions and they hold."
+        if weights.converged
+        else "Not accepted: the optimality conditions do not hold to the tolerance."
+    )
+    return tag("section", title + paragraph(verdict, "lead") + table(("", "value"), rows, kind="facts"))
+
+
+def walk_section(result: Result, walk: Walk | None, why: str) -> str:
+    """Measured and model-optimal walk in time, forces, share of each criterion; `why` explains an absent walk."""
+    title = tag("h2", "The walk of the model")
+    if walk is None:
+        return tag("section", title + missing("measured and model-optimal walk", why))
+    walk = modelled_part(walk)
+    converged = result.weights is None or result.weights.converged
+    mark = "" if converged else paragraph(NOT_CONVERGED, "stamp")
+    return tag("section", title + mark + _joints(walk), "page") + _forces(result, walk) + _share(result, walk)
+
+
+def _joints(walk: Walk) -> str:
+    picture = joints_figure(walk)
+    if picture is None:
+        return missing("joint angles of the model", "walk.npz has no q_measured")
+    absent = (
+        missing("model-optimal curves", "walk.npz has no q_optimal") if walk.numbers("q_optimal", 2) is None else ""
+    )
+    words = (
+        "Degrees over time in seconds, coordinates of the model (rotations "
+        "about y, x, z of each joint), with the model's signs, which are not the clinical signs above. "
+    )
+    spans = [f"{name} {start:.2f}–{end:.2f} s" for name, start, end in phase_spans(walk)]
+    shaded = f"Shaded: phases ({'; '.join(spans)})." if spans else "Phases are not shaded: walk.npz has no phase."
+    return picture + paragraph(words + shaded, "note") + absent
+
+
+def _forces(result: Result, walk: Walk) -> str:
+    title = tag("h2", "Contact forces")
+    picture = forces_figure(walk, result.mass)
+    if picture is None:
+        return tag("section", title + missing("contact forces", "walk.npz has neither forces_optimal nor grf_plates"))
+    words = "Forward is the way of the pelvis on the floor. Plates are not assigned to feet here."
+    absent = [
+        missing(what, f"walk.npz has no {key}")
+        for key, what in (("forces_optimal", "forces of the model"), ("grf_plates", "forces of the plates"))
+        if walk.vectors(key) is None
+    ]
+    return tag("section", title + picture + paragraph(words, "note") + "".join(absent))
+
+
+def _share(result: Result, walk: Walk) -> str:
+    title = tag("h2", "Criteria over the cycle")
+    share = walk.numbers("criteria_share", 2)
+    if share is None:
+        return tag("section", title + missing("share of each criterion in time", "walk.npz has no criteria_share"))
+    criteria = [] if result.weights is None else [criterion.name for criterion in result.weights.criteria]
+    stored = list(walk.names("criteria_names")) or criteria
+    names = (stored + [f"criterion {k + 1}" for k in range(len(stored), share.shape[1])])[: share.shape[1]]
+    return tag("section", title + share_figure(walk.time, share, names))
