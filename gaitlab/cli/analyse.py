@@ -9,9 +9,9 @@ from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotConverged
 from ..pipelines.analyse import Sources, analyse_files
 from ..pipelines.options import AnalysisOptions
-from ..walking.criteria import THESIS
 from ..pipelines.output import make_folder, write_analysis
 from ..report.html import write_report
+from ..walking.criteria import THESIS
 from .progress import progress_bars
 from .summary import print_summary
 
@@ -30,6 +30,7 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     ] = None,
     criteria: Annotated[str, typer.Option(help="Criteria, separated by commas.")] = ",".join(THESIS),
     weights: Annotated[bool, typer.Option(help="Compute the walk and its weights.")] = True,
+    trunk_joint: Annotated[bool, typer.Option(help="Give the trunk a joint of its own on the pelvis.")] = False,
     seed: Annotated[int, typer.Option(help="Seed of everything random.", min=0)] = 0,
     redetect_events: Annotated[bool, typer.Option(help="Detect events although the file has some.")] = False,
     file_offsets: Annotated[
@@ -43,6 +44,7 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
         criteria=tuple(name.strip() for name in criteria.split(",") if name.strip()),
         weights=weights,
         seed=seed,
+        trunk_joint=trunk_joint,
         redetect_events=redetect_events,
         static_offsets="file" if file_offsets else "computed",
     )
@@ -77,4 +79,4 @@ def _assignment(text: str) -> tuple[str, float]:
     try:
         return name.strip(), float(value)
     except ValueError as error:
-        raise InvalidSubject(f"--parameter {text} is not name=number: write for instance left_leg_length=0.82") from error
+        raise InvalidSubject(f"--parameter {text} is not name=number, as left_leg_length=0.82") from error

@@ -1,6 +1,6 @@
 """Progress bars."""
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -22,8 +22,8 @@ class ProgressBars:
         if title not in self._tasks:
             self.finish()
             self._tasks[title] = self._bars.add_task(title, total=None, detail="")
-        completed = {} if step.done is None else {"total": 1.0, "completed": step.done}
-        self._bars.update(self._tasks[title], detail=_detail(step), **completed)
+        total = None if step.done is None else 1.0
+        self._bars.update(self._tasks[title], detail=_detail(step), total=total, completed=step.done)
 
     def finish(self) -> None:
         """Fill every bar."""
@@ -32,7 +32,7 @@ class ProgressBars:
 
 
 @contextmanager
-def progress_bars() -> Iterator[ProgressBars]:
+def progress_bars() -> Generator[ProgressBars]:
     """Bars on stderr while the block runs."""
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[detail]}"))
     with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True)) as bars:

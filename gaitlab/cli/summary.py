@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from ..clinical.document import Document, SpatiotemporalEntry, WeightsEntry
@@ -31,7 +32,7 @@ def _spatiotemporal(entry: SpatiotemporalEntry) -> Table:
     table = Table("", "left", "right", title="Distances and times")
     for field, title in SHOWN.items():
         means = [None if side is None else getattr(side.mean, field) for side in (entry.left, entry.right)]
-        table.add_row(title, *("-" if value is None else f"{value:.2f}" for value in means))
+        table.add_row(escape(title), *("-" if value is None else f"{value:.2f}" for value in means))
     return table
 
 

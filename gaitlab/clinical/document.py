@@ -1,8 +1,8 @@
 """The contract of `result.json`: what one analysis writes and every reader may rely on.
 
 All lengths are metres, times seconds from the first stored frame, angles of curves degrees with the signs of the
-clinical convention (flexion, adduction, internal rotation, anterior tilt, obliquity up positive). A value that could not
-be computed is null, never NaN.
+clinical convention (flexion, adduction, internal rotation, anterior tilt, obliquity up positive). A value that could
+not be computed is null, never NaN.
 """
 
 from pathlib import Path
@@ -31,11 +31,7 @@ SIDES: tuple[Side, Side] = ("left", "right")
 SolverStatus = Literal["solved", "not_converged", "cancelled"]
 
 
-class Entry(msgspec.Struct, frozen=True, kw_only=True):
-    """Base of all parts of the document: immutable, keyword-only."""
-
-
-class InputFile(Entry):
+class InputFile(msgspec.Struct, frozen=True, kw_only=True):
     """One file that was read."""
 
     name: str
@@ -45,7 +41,7 @@ class InputFile(Entry):
     n_frames: int
 
 
-class SegmentEntry(Entry):
+class SegmentEntry(msgspec.Struct, frozen=True, kw_only=True):
     """One rigid body of the subject's model."""
 
     name: str
@@ -53,7 +49,7 @@ class SegmentEntry(Entry):
     length_m: float | None = None
 
 
-class SubjectEntry(Entry):
+class SubjectEntry(msgspec.Struct, frozen=True, kw_only=True):
     """The person as modelled."""
 
     mass_kg: float | None = None
@@ -66,7 +62,7 @@ class SubjectEntry(Entry):
     segments: list[SegmentEntry] = []
 
 
-class EventEntry(Entry):
+class EventEntry(msgspec.Struct, frozen=True, kw_only=True):
     """Foot strike or foot off."""
 
     side: Side
@@ -77,7 +73,7 @@ class EventEntry(Entry):
     """File stem of the walk."""
 
 
-class SideSpatiotemporal(Entry):
+class SideSpatiotemporal(msgspec.Struct, frozen=True, kw_only=True):
     """Distances and times of one side: mean over the cycles, standard deviation, and each cycle."""
 
     n_cycles: int
@@ -88,14 +84,14 @@ class SideSpatiotemporal(Entry):
     cycles: list[Spatiotemporal]
 
 
-class SpatiotemporalEntry(Entry):
+class SpatiotemporalEntry(msgspec.Struct, frozen=True, kw_only=True):
     """Both sides."""
 
     left: SideSpatiotemporal | None = None
     right: SideSpatiotemporal | None = None
 
 
-class Curve(Entry):
+class Curve(msgspec.Struct, frozen=True, kw_only=True):
     """One angle over the gait cycle, 0 to 100 % in 101 samples, deg."""
 
     mean: list[float | None]
@@ -103,14 +99,14 @@ class Curve(Entry):
     n_cycles: int
 
 
-class CurveSides(Entry):
+class CurveSides(msgspec.Struct, frozen=True, kw_only=True):
     """One curve of both sides, each on its own cycle."""
 
     left: Curve | None = None
     right: Curve | None = None
 
 
-class CriterionWeight(Entry):
+class CriterionWeight(msgspec.Struct, frozen=True, kw_only=True):
     """One criterion of the lower level, and how much this walk cares for it."""
 
     name: str
@@ -129,7 +125,7 @@ class CriterionWeight(Entry):
     """True where the weight is zero because the simplex ends there."""
 
 
-class Fit(Entry):
+class Fit(msgspec.Struct, frozen=True, kw_only=True):
     """Distance of the model-optimal walk to the measured one, root mean square [rad]."""
 
     rms_rad: float
@@ -138,14 +134,14 @@ class Fit(Entry):
     """The same weights on strides that were not used to find them: stride name to rms [rad]."""
 
 
-class Comparison(Entry):
+class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     """The same distance for other weights [rad]: what the found weights must beat."""
 
     equal_weights_rms_rad: float | None = None
     single_criterion_rms_rad: dict[str, float | None] = {}
 
 
-class Solver(Entry):
+class Solver(msgspec.Struct, frozen=True, kw_only=True):
     """Certificate, recomputed by gaitlab, and effort."""
 
     status: SolverStatus
@@ -162,7 +158,7 @@ class Solver(Entry):
     """Reason and hint where not solved."""
 
 
-class StrideWeights(Entry):
+class StrideWeights(msgspec.Struct, frozen=True, kw_only=True):
     """Weights of one stride."""
 
     trial: str
@@ -174,7 +170,7 @@ class StrideWeights(Entry):
     solver: Solver | None = None
 
 
-class PooledWeights(Entry):
+class PooledWeights(msgspec.Struct, frozen=True, kw_only=True):
     """All strides of the person together."""
 
     n_strides: int
@@ -182,7 +178,7 @@ class PooledWeights(Entry):
     between_stride_sd: dict[str, float | None]
 
 
-class WeightsEntry(Entry):
+class WeightsEntry(msgspec.Struct, frozen=True, kw_only=True):
     """What the walk trades off."""
 
     criteria: list[CriterionWeight]
@@ -197,7 +193,7 @@ class WeightsEntry(Entry):
     notes: list[str] = []
 
 
-class GapEntry(Entry):
+class GapEntry(msgspec.Struct, frozen=True, kw_only=True):
     """Missing frames of one marker."""
 
     trial: str
@@ -207,15 +203,18 @@ class GapEntry(Entry):
     filled: bool
 
 
-class CalibrationEntry(Entry):
-    """Static offsets computed from the static trial beside those stored in the file [rad]."""
+class CalibrationEntry(msgspec.Struct, frozen=True, kw_only=True):
+    """Offsets of the conventional gait model [rad], signs of Vicon's PROCESSING group; of several walks the first's."""
 
     used: str
-    computed: dict[str, float | None] = {}
-    stored: dict[str, float | None] = {}
+    """Which offsets were used, and how the knee axis was found, in words."""
+    computed: dict[str, float]
+    """left_thigh_rotation ... computed from the static trial; empty without one."""
+    stored: dict[str, float]
+    """The same as stored in the files, where they are."""
 
 
-class QualityEntry(Entry):
+class QualityEntry(msgspec.Struct, frozen=True, kw_only=True):
     """How far the numbers can be trusted."""
 
     gaps: list[GapEntry] = []
@@ -226,7 +225,7 @@ class QualityEntry(Entry):
     """The same per marker."""
 
 
-class Document(Entry):
+class Document(msgspec.Struct, frozen=True, kw_only=True):
     """One analysis."""
 
     version: str

@@ -10,7 +10,6 @@ from .. import __version__
 from ..clinical.cycle_average import average, complete
 from ..clinical.document import (
     CURVES,
-    CalibrationEntry,
     Curve,
     CurveSides,
     Document,
@@ -38,7 +37,6 @@ class Session:
     parameters: Mapping[str, float]
     """Body parameters as used, SI units."""
     assumed: tuple[str, ...]
-    calibration: CalibrationEntry
     settings: Mapping[str, Any]
     warnings: tuple[str, ...]
 
@@ -69,7 +67,8 @@ def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: Weig
 
 
 def _warnings(session: Session, trials: Sequence[TrialAnalysis]) -> list[str]:
-    own = [f"{trial.name}: {warning}" for trial in trials for warning in trial.warnings]
+    prefixes = {trial.name: f"{trial.name}: " if len(trials) > 1 else "" for trial in trials}
+    own = [prefixes[trial.name] + warning for trial in trials for warning in trial.warnings]
     return list(dict.fromkeys([*session.warnings, *own]))
 
 
@@ -94,7 +93,7 @@ def _subject(session: Session, subject: SubjectModel) -> SubjectEntry:
         height_m=session.parameters.get("height"),
         parameters=dict(sorted(session.parameters.items())),
         assumed=list(session.assumed),
-        preset=subject.name,
+        preset=f"{subject.n_q} coordinates",
         segments=[
             SegmentEntry(name=segment.name, mass_kg=segment.mass, length_m=_length(subject, index))
             for index, segment in enumerate(subject.segments)
@@ -136,23 +135,19 @@ def _numbers(values: np.ndarray) -> list[float | None]:
 
 
 def _quality(session: Session, trials: Sequence[TrialAnalysis]) -> QualityEntry:
-    residuals = {name: value for trial in trials for name, value in trial.motion.marker_residuals.items()}
+    residuals = {name: value for trial in trials for name, value in trial.motion.rms_by_marker().items()}
     squares = [trial.motion.marker_rms**2 for trial in trials]
     return QualityEntry(
         gaps=[gap for trial in trials for gap in _gaps(trial)],
-        calibration=session.calibration,
+        calibration=trials[0].calibration,
         marker_residual_rms_m=float(np.sqrt(np.mean(squares))),
-        marker_residuals_m={name: float(value) if np.isfinite(value) else None for name, value in residuals.items()},
+        marker_residuals_m=dict(residuals),
     )
 
 
 def _gaps(trial: TrialAnalysis) -> list[GapEntry]:
     rate = trial.recording.rate
     return [
-        GapEntry(
-            trial=trial.name, marker=gap.marker, start_s=gap.start / rate, end_s=gap.end / rate, filled=gap.filled
-        )
+        GapEntry(trial=trial.name, marker=gap.marker, start_s=gap.start / rate, end_s=gap.end / rate, filled=gap.filled)
         for gap in trial.gaps
     ]
-
-

@@ -7,12 +7,16 @@ from typing import Literal
 
 from ..errors import InvalidSubject, NotFound, ProblemError
 from ..mocap.subject_parameters import LENGTHS, SIDED_ANGLES, SIDED_LENGTHS
+from ..multibody.anthropometry import AnthropometryName
 from ..walking.criteria import THESIS, by_name
 
 MASS_RANGE = (1.0, 500.0)  # [kg]
 SIDED = (*SIDED_LENGTHS.values(), *((name, -inf, inf) for name in SIDED_ANGLES.values()))
-PLAUSIBLE = {"mass": MASS_RANGE} | {name: (low, high) for name, low, high in LENGTHS.values()}
-PLAUSIBLE |= {f"{side}_{name}": (low, high) for side in ("left", "right") for name, low, high in SIDED}
+PLAUSIBLE = (
+    {"mass": MASS_RANGE}
+    | {name: (low, high) for name, low, high in LENGTHS.values()}
+    | {f"{side}_{name}": (low, high) for side in ("left", "right") for name, low, high in SIDED}
+)
 """Names of body parameters that may be given, with their plausible range [kg, m, rad]."""
 
 StaticOffsets = Literal["computed", "file"]
@@ -34,8 +38,10 @@ class AnalysisOptions:
     """Whether offsets computed from the static trial are used, or those stored in its file."""
     longest_gap: float = 0.1
     """Longest gap in a marker that is filled [s]."""
-    cut_off: float = 6.0
-    """Cut-off of the zero-lag filter of markers for the dynamic walk [Hz] (Winter 2009, ch. 3)."""
+    anthropometry: AnthropometryName = "corrected"
+    """Table of segment masses and inertias."""
+    trunk_joint: bool = False
+    """False: head, arms and trunk are rigid on the pelvis as in the thesis; True: three coordinates more."""
 
     def __post_init__(self) -> None:
         for name, value in self.parameters.items():

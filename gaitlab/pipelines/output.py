@@ -1,7 +1,7 @@
 """The files of an analysis: result.json, tables, model, walk."""
 
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -18,7 +18,7 @@ METRE_DIGITS = 7
 
 
 @contextmanager
-def _writing(path: Path) -> Iterator[None]:
+def _writing(path: Path) -> Generator[None]:
     try:
         yield
     except OSError as error:
@@ -54,7 +54,7 @@ def _write_trial(trial: TrialAnalysis, document: Document, folder: Path) -> None
     with _writing(folder / "model.urdf"):
         (folder / "model.urdf").write_text(to_urdf(trial.subject), encoding="utf-8")
     with _writing(folder / "walk.npz"):
-        np.savez_compressed(folder / "walk.npz", **trial.arrays)
+        np.savez_compressed(folder / "walk.npz", allow_pickle=False, **trial.arrays)
     write_document(document, folder / "result.json")
 
 

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..clinical.cycle_average import time_normalise
-from ..clinical.document import CURVES, SIDES
+from ..clinical.document import CURVES, SIDES, CalibrationEntry
 from ..clinical.spatiotemporal import Spatiotemporal, cycle_spatiotemporal
-from ..errors import InvalidRecording
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.kinematics import InverseKinematics
-from ..mocap.cycles import Cycle, cycles
+from ..mocap.cycles import Cycle, cycles, full_strides, visible_strides
 from ..mocap.recording import Event, Recording, Side
 from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap
 from .weights import TrialWeights
 
+Cycles = Mapping[Side, tuple[Cycle, ...]]
 Curves = Mapping[str, Mapping[Side, tuple[np.ndarray, ...]]]
 """Curve name to side to one array of 101 samples [deg] per cycle, NaN where unknown."""
 
@@ -29,7 +29,8 @@ class TrialAnalysis:
     """Short gaps filled."""
     gaps: tuple[Gap, ...]
     events: tuple[Event, ...]
-    cycles: Mapping[Side, tuple[Cycle, ...]]
+    cycles: Cycles
+    calibration: CalibrationEntry
     kinematics: ConventionalKinematics
     curves: Curves
     spatiotemporal: Mapping[Side, tuple[Spatiotemporal, ...]]
@@ -46,19 +47,19 @@ class TrialAnalysis:
         return self.recording.name
 
 
-def full_cycles(recording: Recording, events: tuple[Event, ...]) -> dict[Side, tuple[Cycle, ...]]:
-    """Cycles of both sides; raises InvalidRecording when there is not one full stride of either."""
-    found: dict[Side, tuple[Cycle, ...]] = {side: tuple(cycles(events, side)) for side in SIDES}
-    if not any(found.values()):
-        strikes = sum(event.kind == "foot_strike" for event in events)
-        raise InvalidRecording(
-            f"{recording.name}: no full stride ({strikes} foot strikes found, two of one side are needed); "
-            "give a longer trial, or try --redetect-events"
-        )
-    return found
+def full_cycles(recording: Recording, events: tuple[Event, ...]) -> tuple[Cycles, tuple[str, ...]]:
+    """Full strides of both sides, and a warning for each side without one and each stride with missing markers.
+
+    Raises:
+        InvalidRecording: No stride is full, or in none all markers are seen.
+    """
+    _, warnings = visible_strides(recording, full_strides(recording.name, events))
+    found: dict[Side, tuple[Cycle, ...]] = {side: cycles(events, side) for side in SIDES}
+    empty = tuple(f"no full stride of the {side} side" for side in SIDES if not found[side])
+    return found, (*warnings, *empty)
 
 
-def cycle_curves(kinematics: ConventionalKinematics, found: Mapping[Side, tuple[Cycle, ...]], rate: float) -> Curves:
+def cycle_curves(kinematics: ConventionalKinematics, found: Cycles, rate: float) -> Curves:
     """The nine curves cut at the foot strikes, 101 samples [deg] each; `rate` in frames per second [Hz]."""
     return {
         curve: {
@@ -72,7 +73,7 @@ def cycle_curves(kinematics: ConventionalKinematics, found: Mapping[Side, tuple[
 
 
 def trial_spatiotemporal(
-    recording: Recording, kinematics: ConventionalKinematics, found: Mapping[Side, tuple[Cycle, ...]]
+    recording: Recording, kinematics: ConventionalKinematics, found: Cycles
 ) -> dict[Side, tuple[Spatiotemporal, ...]]:
     """Distances and times of every cycle, measured at the heel markers, or at the ankles where one is missing."""
     feet = _feet(recording, kinematics)
@@ -80,6 +81,7 @@ def trial_spatiotemporal(
 
 
 def _feet(recording: Recording, kinematics: ConventionalKinematics) -> dict[Side, np.ndarray]:
-    heels = {side: recording.markers.get(f"{side[0].upper()}HEE") for side in SIDES}
-    present = {side: heel for side, heel in heels.items() if heel is not None and np.isfinite(heel).any()}
-    return present if len(present) == 2 else {side: kinematics.joint_centres[f"{side}_ankle"] for side in SIDES}
+    left, right = recording.markers.get("LHEE"), recording.markers.get("RHEE")
+    if left is not None and right is not None and np.isfinite(left).any() and np.isfinite(right).any():
+        return {"left": left, "right": right}
+    return {"left": kinematics.joint_centres["left_ankle"], "right": kinematics.joint_centres["right_ankle"]}

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..clinical.document import WeightsEntry
+from ..errors import ProblemError
 from ..mocap.recording import Event, Recording
 from ..multibody.subject import SubjectModel
+from .progress import Progress
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,3 +36,15 @@ class TrialWeights:
     arrays: Mapping[str, np.ndarray]
     """q_optimal, tau_optimal, forces_optimal ... for walk.npz, shape (n_frames, ...), NaN outside the strides."""
     warnings: tuple[str, ...] = ()
+
+
+def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeights:
+    """Tracking, continuation and weights of one walk."""
+    del progress
+    raise ProblemError(f"{request.recording.name}: the weights cannot be computed yet; ask for --no-weights")
+
+
+def pooled_weights(trials: Mapping[str, TrialWeights]) -> WeightsEntry | None:
+    """The weights of several walks of one person together: their mean, and the spread between strides."""
+    del trials
+    return None

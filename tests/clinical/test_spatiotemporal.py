@@ -36,9 +36,7 @@ def test_cadence_counts_both_steps_of_a_stride():
 
 
 def test_what_an_absent_event_leaves_unknown_is_null():
-    partial = Cycle(
-        side="left", start=1.0, end=2.0, foot_off=None, opposite_foot_off=None, opposite_foot_strike=None
-    )
+    partial = Cycle(side="left", start=1.0, end=2.0, foot_off=None, opposite_foot_off=None, opposite_foot_strike=None)
     result = cycle_spatiotemporal(partial, straight_walk(0.0), RATE)
     assert (result.step_length_m, result.foot_off_percent, result.double_support_percent) == (None, None, None)
     assert result.stride_length_m == pytest.approx(1.2)

@@ -1,0 +1,56 @@
+"""From the direct conventional gait model to the person's multibody model and its motion."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..errors import InvalidSubject
+from ..inverse.conventional import ConventionalKinematics
+from ..inverse.kinematics import InverseKinematics, solve_inverse_kinematics
+from ..mocap.recording import Recording
+from ..multibody.kinematics import coordinates_from_poses
+from ..multibody.scaling import MeasuredBody, SubjectSettings, build_subject, segment_poses
+from ..multibody.subject import SubjectModel
+from .gait_frame import lab_to_gait, rotation_gait_to_lab
+
+SEGMENTS = ("pelvis", *(f"{side}_{kind}" for side in ("right", "left") for kind in ("thigh", "shank", "foot")))
+
+
+def person_model(
+    recording: Recording,
+    kinematics: ConventionalKinematics,
+    parameters: Mapping[str, float],
+    settings: SubjectSettings,
+) -> SubjectModel:
+    """The person's model from a static trial, or from a walk where there is none."""
+    missing = [name for name in ("mass", "height") if name not in parameters]
+    if missing:
+        options = " and ".join(f"--{name}" for name in missing)
+        raise InvalidSubject(
+            f"{recording.name}: the file does not hold the body's {' and '.join(missing)}; use {options}"
+        )
+    body = _measured_body(recording, kinematics, 0.0)
+    return build_subject(body, parameters["mass"], parameters["height"], settings=settings)
+
+
+def whole_model_motion(
+    subject: SubjectModel, recording: Recording, kinematics: ConventionalKinematics
+) -> InverseKinematics:
+    """Least-squares motion of the model over all markers, gait frame, started from the direct model."""
+    body = _measured_body(recording, kinematics, kinematics.heading)
+    poses = segment_poses(body)
+    rotations = [poses[segment.name if segment.name in poses else "pelvis"].rotation for segment in subject.segments]
+    start = coordinates_from_poses(subject, poses["pelvis"].origin, np.stack(rotations, axis=1))
+    return solve_inverse_kinematics(
+        subject, body.markers, recording.rate, joint_centres=body.joint_centres, initial=start
+    )
+
+
+def _measured_body(recording: Recording, kinematics: ConventionalKinematics, heading: float) -> MeasuredBody:
+    """What was measured, turned from the laboratory to the gait frame of a heading [rad]."""
+    to_gait = rotation_gait_to_lab(heading).T
+    return MeasuredBody(
+        joint_centres={name: lab_to_gait(centre, heading) for name, centre in kinematics.joint_centres.items()},
+        axes={name: to_gait @ kinematics.segments[name].rotation for name in SEGMENTS},
+        markers={name: lab_to_gait(positions, heading) for name, positions in recording.markers.items()},
+    )
