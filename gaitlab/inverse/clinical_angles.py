@@ -46,14 +46,14 @@ def cardan_yxz(rotation: np.ndarray) -> np.ndarray:
         ],
         axis=1,
     )
-    there = np.isfinite(angles).all(axis=1)
+    there = np.isfinite(angles.sum(axis=1))
     angles[~there] = np.nan
-    if not there.any():
-        return angles
     seen = angles[there]
-    if np.abs(seen[:, 1]).max() > NEAR_GIMBAL_LOCK:
+    if np.abs(seen[:, 1]).max(initial=0.0) > NEAR_GIMBAL_LOCK:
         seen = _continuous_branch(seen)
-    angles[there] = np.unwrap(seen, axis=0)
+    if np.abs(seen[1:] - seen[:-1]).max(initial=0.0) > np.pi:
+        seen = np.unwrap(seen, axis=0)
+    angles[there] = seen
     return angles
 
 
@@ -76,8 +76,9 @@ def _turn(angle: np.ndarray) -> np.ndarray:
 
 def centred(angle: np.ndarray) -> np.ndarray:
     """A continuous curve [rad], shape (n,), moved by whole turns until its mean lies within half a turn of zero."""
-    there = angle[np.isfinite(angle)]
-    return angle - 2 * np.pi * np.round(there.mean() / (2 * np.pi)) if there.size else angle
+    if not np.fmax.reduce(np.abs(angle)) > np.pi:  # also when nothing is there
+        return angle
+    return angle - 2 * np.pi * np.round(np.nanmean(angle) / (2 * np.pi))
 
 
 def travel_heading(origin: np.ndarray, facing: np.ndarray) -> float:

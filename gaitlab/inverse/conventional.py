@@ -147,8 +147,7 @@ def _seen(markers: Mapping[str, np.ndarray], name: str) -> bool:
 def leg_pose(markers: Mapping[str, np.ndarray], side: Side, calibration: SideCalibration, hip: np.ndarray) -> LegPose:
     """Knee, ankle and the axes of thigh and shank from a hip centre (n, 3), laboratory frame [m].
 
-    Knee and ankle are chords from the thigh and shank wands; then the ankle centre turns about ANK by the ankle
-    abduction b: with v = C - ANK and k the bone axis, C' = ANK + v cos(b) + |v| k sin(b).
+    Knee and ankle are chords from the thigh and shank wands; then the ankle abduction turns the ankle centre.
     """
     letter, s = side[0].upper(), SIGN[side]
     knee_lateral, ankle_lateral = markers[f"{letter}KNE"], markers[f"{letter}ANK"]
@@ -156,12 +155,19 @@ def leg_pose(markers: Mapping[str, np.ndarray], side: Side, calibration: SideCal
     ankle = chord(
         knee, ankle_lateral, markers[f"{letter}TIB"], calibration.ankle_distance, s * calibration.shank_rotation
     )
-    inwards, bone = ankle - ankle_lateral, unit(knee - ankle)
-    b = calibration.ankle_abduction
-    ankle = ankle_lateral + inwards * np.cos(b) + norm(inwards) * bone * np.sin(b)
+    ankle = abducted_ankle(knee, ankle, ankle_lateral, calibration.ankle_abduction)
     return leg_axes(
         hip, knee, ankle, (s * (knee_lateral - knee), s * (ankle_lateral - ankle)), s * calibration.tibial_torsion
     )
+
+
+def abducted_ankle(knee: np.ndarray, ankle: np.ndarray, lateral: np.ndarray, abduction: float) -> np.ndarray:
+    """Ankle centre C turned upwards about the marker ANK by `abduction` [rad], laboratory frame [m], shape (n, 3).
+
+    With v = C - ANK and k the bone axis, which is across v: C' = ANK + v cos + |v| k sin.
+    """
+    inwards = ankle - lateral
+    return lateral + inwards * np.cos(abduction) + norm(inwards) * unit(knee - ankle) * np.sin(abduction)
 
 
 def leg_axes(

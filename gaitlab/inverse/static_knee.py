@@ -12,7 +12,7 @@ TIPS = ("KAX", "KD1", "KD2")
 
 
 def wears_device(markers: Mapping[str, np.ndarray], side: Side) -> bool:
-    """Whether the three tips of the knee alignment device are ever seen together."""
+    """Whether the three tips of the knee alignment device, each (n, 3), are ever seen together."""
     tips = [markers.get(side[0].upper() + tip) for tip in TIPS]
     found = [tip for tip in tips if tip is not None]
     return len(found) == len(TIPS) and bool(np.isfinite(np.hstack(found)).all(axis=1).any())

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from gaitlab.errors import InvalidRecording
-from gaitlab.inverse.conventional import LegPose, leg_axes, leg_pose, pelvis_axes
+from gaitlab.inverse.conventional import LegPose, abducted_ankle, leg_axes, leg_pose, pelvis_axes
 from gaitlab.inverse.conventional_calibration import SIGN, CalibrationMethod, SideCalibration
 from gaitlab.inverse.conventional_geometry import angle_about, chord, dot, frame_from_z, unit
 from gaitlab.inverse.static_knee import device_apex, wears_device
@@ -116,8 +116,9 @@ def _pose_from_axes(
     knee_axis = s * (knee_lateral - knee)
     medial = _first_seen(markers, leg.side, ANKLE_MEDIAL)
     if medial is None:  # the ankle's axis is the knee's, turned by the given torsion
-        pointer = ankle_lateral + s * knee_axis
+        pointer = knee + s * knee_axis
         ankle = chord(knee, ankle_lateral, pointer, leg.start.ankle_distance, s * leg.start.tibial_torsion)
+        ankle = abducted_ankle(knee, ankle, ankle_lateral, leg.start.ankle_abduction)
     else:
         ankle = ankle_lateral + leg.start.ankle_distance * unit(medial - ankle_lateral)
     return leg_axes(hip, knee, ankle, (knee_axis, s * (ankle_lateral - ankle)), s * leg.start.tibial_torsion)

@@ -39,6 +39,14 @@ def test_method_and_flat_foot_are_recognised(trial, static, method, flat):
     assert {side.foot_flat for side in sides.values()} == {flat}
 
 
+def test_without_medial_ankle_marker_the_given_torsion_leads_to_the_same_shank(trial):
+    static = trial("fmc_adult/*BP01")
+    bare = replace(static, markers={n: m for n, m in static.markers.items() if n not in ("LMED", "RMED")})
+    for side, calibrated in calibrate_subject(bare, static, {}).sides.items():
+        stored = static.parameters[f"{side}_shank_rotation"]
+        assert np.degrees(calibrated.shank_rotation) == pytest.approx(np.degrees(stored), abs=0.2)
+
+
 def test_wrong_choice_of_flat_foot_shows(trial):
     static = trial("stairs_adult/Static_trial")
     wrong = CalibrationSettings(left_foot_flat=True, right_foot_flat=True)
