@@ -6,14 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.errors import InvalidRecording
+from gaitlab.mocap.labels import FOREFOOT, PELVIS, REARFOOT
 from gaitlab.mocap.recording import Recording, Side
 from gaitlab.signal.derivatives import derivative
 from gaitlab.signal.filtering import low_pass
 from gaitlab.signal.gaps import fill_gaps
 
-REARFOOT = ("HEE", "CPG", "STL", "LCA", "PCA")
-FOREFOOT = ("TOE", "HLX", "D1M", "D5M", "SMH", "FMH", "VMH", "P1M", "P5M")
-PELVIS = ("SACR", "LPSI", "RPSI", "LASI", "RASI")
 PELVIS_CUT_OFF = 6.0  # Hz; only the mean speed is wanted
 SLOWEST_WALK = 0.1  # m/s; below it a trial holds no walking
 

@@ -10,26 +10,29 @@ import numpy as np
 
 from gaitlab.mocap.raw import RawRecording
 from gaitlab.mocap.recording import ForcePlate
-from gaitlab.signal.resampling import centred_means
+from gaitlab.signal.averaging import centred_means
 
 LOADED = 100.0  # N; a plate under a foot carries more, unloaded plates drift by less
 Wrench = tuple[np.ndarray, np.ndarray]
 """Force [N] and moment [N*m] in plate axes, shapes (n_samples, 3), about the centre of the working surface."""
 
 
-def force_plates(raw: RawRecording, metre: float) -> tuple[tuple[ForcePlate, ...], tuple[str, ...]]:
+def force_plates(
+    raw: RawRecording, metre: float, rotation: np.ndarray
+) -> tuple[tuple[ForcePlate, ...], tuple[str, ...]]:
     """All plates of the file that can be used, and warnings about the others.
 
     Args:
         raw: Contents of the file.
         metre: Metres per unit of the file's lengths.
+        rotation: From the file's axes to z up, shape (3, 3).
     """
     types = raw.numbers("FORCE_PLATFORM", "TYPE")
     plates: list[ForcePlate] = []
     warnings: list[str] = []
     for k in range(min(types.size, _used(raw))):
         try:
-            plate, said = _plate(raw, k, int(types.flat[k]), metre)
+            plate, said = _plate(raw, k, int(types.flat[k]), metre, rotation)
         except ValueError as error:
             warnings.append(f"force plate {k + 1} is not used: {error}")
             continue
@@ -49,11 +52,11 @@ def _used(raw: RawRecording) -> int:
     return int(used.flat[0]) if used.size else 0
 
 
-def _plate(raw: RawRecording, k: int, kind: int, metre: float) -> tuple[ForcePlate, tuple[str, ...]]:
+def _plate(raw: RawRecording, k: int, kind: int, metre: float, z_up: np.ndarray) -> tuple[ForcePlate, tuple[str, ...]]:
     if kind not in TYPES:
         raise ValueError(f"its type is {kind}, gaitlab knows types 1 to 4")
     n_channels, wrench_of = TYPES[kind]
-    corners = _of_plate(raw, "CORNERS", k, 12).reshape(4, 3) * metre
+    corners = _of_plate(raw, "CORNERS", k, 12).reshape(4, 3) @ (metre * z_up.T)
     origin = _of_plate(raw, "ORIGIN", k, 3) * metre
     rotation = _rotation(corners)
     samples = _samples(raw, k, kind, metre)

@@ -4,6 +4,7 @@ Source: C3D file format, the 512-byte header section (c3d.org).
 """
 
 import os
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,8 @@ from gaitlab.errors import InvalidRecording
 
 BLOCK = 512  # bytes
 MAGIC = 0x50
-INTEL, DEC, MIPS = 84, 85, 86
+DEC, MIPS = 85, 86  # processor types; 84 is Intel
+LARGEST_PARAMETERS = 256 * BLOCK  # the section's length is one byte
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,12 +49,12 @@ def check_file(path: Path, largest: int) -> None:
             start = file.read(BLOCK)
             _check_start(path, start, size, largest)
             file.seek((start[0] - 1) * BLOCK, os.SEEK_SET)
-            processor = file.read(4)[3:]
+            parameters = file.read(LARGEST_PARAMETERS)
     except OSError as error:
         raise InvalidRecording(f"{path}: the file cannot be read ({error.strerror}); check its permissions") from error
-    if not processor:
+    if len(parameters) < 4:
         raise InvalidRecording(f"{path}: the C3D file is truncated before its parameters; copy it again")
-    header = parse_header(start, processor[0])
+    header = parse_header(start, parameters)
     if size < header.end:
         raise InvalidRecording(
             f"{path}: the C3D file is truncated: {size} bytes, but {header.n_frames} frames need {header.end}; "
@@ -73,16 +75,28 @@ def _check_start(path: Path, start: bytes, size: int, largest: int) -> None:
         raise InvalidRecording(f"{path}: the C3D file is truncated inside its header; copy it again")
 
 
-def parse_header(start: bytes, processor: int) -> Header:
-    """Header section (512 bytes) of a file of the given processor type (84 Intel, 85 DEC, 86 MIPS)."""
+def parse_header(start: bytes, parameters: bytes) -> Header:
+    """Sizes from the header section and the parameter section of a file.
+
+    Byte 3 of the parameter section tells the processor type. The header may keep the frame range of the original capture; POINT:FRAMES then states fewer.
+    """
+    processor = parameters[3]
     order = ">" if processor == MIPS else "<"
     n_points, n_analog, first, last, _ = struct.unpack(order + "5H", start[2:12])
     data_block: int = struct.unpack(order + "H", start[16:18])[0]
     sign_byte = {MIPS: start[12], DEC: start[13]}.get(processor, start[15])  # of the scale factor
+    in_range = max(last - first + 1, 0)
+    stated = _stated_frames(parameters, order)
     return Header(
         n_points=n_points,
         n_analog=n_analog,
-        n_frames=max(last - first + 1, 0),
+        n_frames=in_range if stated is None else min(stated, in_range),
         data_start=max(data_block - 1, 0) * BLOCK,
         value_size=4 if sign_byte & 0x80 else 2,  # a negative scale factor marks real numbers
     )
+
+
+def _stated_frames(parameters: bytes, order: str) -> int | None:
+    """POINT:FRAMES where it is stored as an integer: name length, group, name, offset (2), type (1), dimensions (1)."""
+    found = re.search(rb"[\x06\xfa].FRAMES..\x02\x00(..)", parameters, re.DOTALL)
+    return int(struct.unpack(order + "H", found[1])[0]) if found else None

@@ -5,6 +5,7 @@ import numpy as np
 from gaitlab.errors import InvalidRecording
 from gaitlab.mocap.force_plates import force_plates, plate_channels
 from gaitlab.mocap.labels import OUTPUT_GROUPS, sort_labels
+from gaitlab.mocap.laboratory import rotation_to_z_up
 from gaitlab.mocap.privacy import privacy_warnings
 from gaitlab.mocap.raw import RawRecording
 from gaitlab.mocap.recording import Event, EventKind, Recording, Side
@@ -36,29 +37,28 @@ def interpret(raw: RawRecording, name: str, sha256: str) -> Recording:
     if not sorted_points.markers:
         raise InvalidRecording(f"{name}: the C3D file holds no markers, only model outputs; export the trajectories")
     metre, unit_warnings = _metre(raw)
-    plates, plate_warnings = force_plates(raw, metre)
+    rotation, vertical = rotation_to_z_up({label: raw.points[:, k] for label, k in sorted_points.markers.items()})
+    to_laboratory = metre * rotation.T
+    plates, plate_warnings = force_plates(raw, metre, rotation)
     events, event_warnings = file_events(raw)
     parameters, parameter_warnings = subject_parameters(raw)
-    positions = {label: raw.points[:, k] * metre for label, k in sorted_points.positions.items()}
+    positions = {label: raw.points[:, k] @ to_laboratory for label, k in sorted_points.positions.items()}
     outputs = {label: raw.points[:, k].copy() for label, k in sorted_points.outputs.items()}
+    turned = () if vertical == "+z" else (f"the file's vertical axis is {vertical}; it is turned so that z points up",)
+    said = sorted_points.warnings + unit_warnings + turned + plate_warnings + event_warnings + parameter_warnings
     return Recording(
         name=name,
         sha256=sha256,
         rate=raw.rate,
         first_frame=raw.first_frame,
-        markers={label: raw.points[:, k] * metre for label, k in sorted_points.markers.items()},
+        markers={label: raw.points[:, k] @ to_laboratory for label, k in sorted_points.markers.items()},
         model_outputs=positions | outputs,
         force_plates=plates,
         events=events,
         parameters=parameters,
         analog=_other_channels(raw),
         analog_rate=raw.analog_rate,
-        warnings=sorted_points.warnings
-        + unit_warnings
-        + plate_warnings
-        + event_warnings
-        + parameter_warnings
-        + privacy_warnings(raw),
+        warnings=said + privacy_warnings(raw),
     )
 
 

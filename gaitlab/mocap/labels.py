@@ -16,6 +16,9 @@ SIDED = (
     "FHD BHD SHO UPA ELB FRM WRA WRB FIN ASI PSI ILC THI THAP THAD PAT KNE KNM KAX KD1 KD2 TIB TIAP TIAD TTUB "
     "ANK MED HEE TOE HFB TUB SHN MMA CPG PCA LCA STL NAV P1M D1M P5M D5M HLX SMH FMH VMH CUN TRO"
 ).split()
+PELVIS = ("SACR", "LPSI", "RPSI", "LASI", "RASI")
+REARFOOT = ("HEE", "CPG", "STL", "LCA", "PCA")  # without the side letter, the most usual first
+FOREFOOT = ("TOE", "HLX", "D1M", "D5M", "SMH", "FMH", "VMH", "P1M", "P5M")
 CENTRAL = ("C7", "T2", "T6", "T10", "T12", "CLAV", "STRN", "RBAK", "LBAK", "SACR")
 CANONICAL = frozenset(side + name for side in "LR" for name in SIDED) | frozenset(CENTRAL)
 

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from gaitlab.mocap.feet import FootMotion
 from gaitlab.mocap.recording import EventKind, ForcePlate, Recording, Side
 from gaitlab.signal.runs import runs
@@ -32,16 +30,28 @@ def plate_edges(recording: Recording, motions: Sequence[FootMotion]) -> list[Pla
     Loading is the foot's strike only if the end that lands first, heel or toe, is above the plate; unloading is its
     foot off only if the toe is.
     """
-    edges: list[PlateEdge] = []
-    for plate in recording.force_plates:
-        for start, end in contacts(plate):
-            for sample, kind in ((start, "foot_strike"), (end, "foot_off")):
-                if 0 < sample < len(plate.force):
-                    time = sample / plate.rate
-                    frame = min(round(time * recording.rate), recording.n_frames - 1)
-                    sides = frozenset(m.side for m in motions if _above(plate, m, frame, kind))
-                    edges.append(PlateEdge(kind=kind, time=time, sides=sides))
-    return edges
+    return [
+        PlateEdge(
+            kind=kind, time=sample / plate.rate, sides=_feet(plate, motions, kind, sample / plate.rate, recording)
+        )
+        for plate in recording.force_plates
+        for kind, sample in _edge_samples(plate)
+    ]
+
+
+def _edge_samples(plate: ForcePlate) -> list[tuple[EventKind, int]]:
+    """Samples at which a contact begins or ends; a contact that is cut by the end of the trial has no such end."""
+    found = contacts(plate)
+    strikes: list[tuple[EventKind, int]] = [("foot_strike", start) for start, _ in found if start > 0]
+    offs: list[tuple[EventKind, int]] = [("foot_off", end) for _, end in found if end < len(plate.force)]
+    return strikes + offs
+
+
+def _feet(
+    plate: ForcePlate, motions: Sequence[FootMotion], kind: EventKind, time: float, recording: Recording
+) -> frozenset[Side]:
+    frame = min(round(time * recording.rate), recording.n_frames - 1)
+    return frozenset(motion.side for motion in motions if _above(plate, motion, frame, kind))
 
 
 def contacts(plate: ForcePlate) -> list[tuple[int, int]]:
