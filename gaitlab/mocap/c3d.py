@@ -6,10 +6,15 @@ from pathlib import Path
 import ezc3d
 import numpy as np
 
+from gaitlab.errors import OutputError
+from gaitlab.mocap.force_plates import MILLIMETRES, plate_samples
 from gaitlab.mocap.interpretation import interpret
 from gaitlab.mocap.raw import ParameterValue, RawRecording
 from gaitlab.mocap.recording import Recording
 from gaitlab.mocap.sandbox import ReaderLimits, read_raw
+from gaitlab.mocap.subject_parameters import file_parameters
+
+EVENT_LABELS = {"foot_strike": "Foot Strike", "foot_off": "Foot Off"}
 
 
 def read_c3d(path: Path, limits: ReaderLimits | None = None) -> Recording:
@@ -63,3 +68,70 @@ def _value(value: "list[str] | np.ndarray") -> ParameterValue:
     if isinstance(value, np.ndarray):
         return value.astype(float)
     return tuple(text.encode("utf-8", "replace").decode().strip() for text in value)
+
+
+def write_c3d(path: Path, recording: Recording) -> None:
+    """Writes markers, plates (type 2), events and subject parameters in mm, N and N*mm, as Nexus would.
+
+    Model outputs and other analogue channels are not written. Numbers are stored as 32-bit reals; the same recording
+    gives the same bytes.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    c3d = ezc3d.c3d()
+    _put_points(c3d, recording)
+    _put_plates(c3d, recording)
+    _put_events(c3d, recording)
+    c3d.add_parameter("MANUFACTURER", "SOFTWARE", ["gaitlab"])
+    for name, value in file_parameters(recording.parameters).items():
+        c3d.add_parameter("PROCESSING", name, [float(value)])
+    try:
+        c3d.write(str(path))
+    except (OSError, RuntimeError) as error:
+        raise OutputError(f"{path}: the C3D file cannot be written ({error}); choose another folder") from error
+    if not path.is_file():
+        raise OutputError(f"{path}: the C3D file cannot be written; choose another folder")
+
+
+def _put_points(c3d: ezc3d.c3d, recording: Recording) -> None:
+    points = np.full((4, len(recording.markers), recording.n_frames), np.nan)
+    for k, positions in enumerate(recording.markers.values()):
+        points[:3, k] = MILLIMETRES * positions.T
+    missing = np.isnan(points[:3]).any(axis=0)
+    points[:3, missing] = 0.0
+    points[3] = 1.0
+    c3d["header"]["points"]["first_frame"] = recording.first_frame
+    c3d["parameters"]["POINT"]["RATE"]["value"] = np.array([recording.rate])
+    c3d["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    c3d["parameters"]["POINT"]["LABELS"]["value"] = list(recording.markers)
+    c3d["data"]["points"] = points
+    c3d["data"]["meta_points"]["residuals"] = np.where(missing, -1.0, 0.0)[None]
+    c3d["data"]["meta_points"]["camera_masks"] = np.zeros((7, *missing.shape), dtype=bool)
+
+
+def _put_plates(c3d: ezc3d.c3d, recording: Recording) -> None:
+    plates = recording.force_plates
+    if not plates:
+        return
+    ratio = round(plates[0].rate / recording.rate)
+    n_samples = ratio * recording.n_frames
+    axes = ("Force.Fx", "Force.Fy", "Force.Fz", "Moment.Mx", "Moment.My", "Moment.Mz")
+    c3d["parameters"]["ANALOG"]["RATE"]["value"] = np.array([ratio * recording.rate])
+    c3d["parameters"]["ANALOG"]["LABELS"]["value"] = [f"{axis}{k + 1}" for k in range(len(plates)) for axis in axes]
+    c3d["parameters"]["ANALOG"]["UNITS"]["value"] = ["N", "N", "N", "Nmm", "Nmm", "Nmm"] * len(plates)
+    samples = np.concatenate([plate_samples(plate) for plate in plates], axis=1)[:n_samples]
+    c3d["data"]["analogs"] = samples.T[None]
+    corners = np.stack([MILLIMETRES * plate.corners.T for plate in plates], axis=2)  # (3, 4, n)
+    c3d.add_parameter("FORCE_PLATFORM", "USED", [len(plates)])
+    c3d.add_parameter("FORCE_PLATFORM", "TYPE", [2] * len(plates))
+    c3d.add_parameter("FORCE_PLATFORM", "ZERO", [1, 0])
+    c3d.add_parameter("FORCE_PLATFORM", "CORNERS", corners)
+    c3d.add_parameter("FORCE_PLATFORM", "ORIGIN", np.zeros((3, len(plates))))
+    c3d.add_parameter("FORCE_PLATFORM", "CHANNEL", 1.0 + np.arange(6.0 * len(plates)).reshape(-1, 6).T)
+
+
+def _put_events(c3d: ezc3d.c3d, recording: Recording) -> None:
+    start = recording.first_frame / recording.rate
+    for event in recording.events:
+        c3d.add_event([0, start + event.time], context=event.side.capitalize(), label=EVENT_LABELS[event.kind])

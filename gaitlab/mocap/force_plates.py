@@ -12,6 +12,7 @@ from gaitlab.mocap.raw import RawRecording
 from gaitlab.mocap.recording import ForcePlate
 from gaitlab.signal.averaging import centred_means
 
+MILLIMETRES = 1e3  # per metre
 LOADED = 100.0  # N; a plate under a foot carries more, unloaded plates drift by less
 Wrench = tuple[np.ndarray, np.ndarray]
 """Force [N] and moment [N*m] in plate axes, shapes (n_samples, 3), about the centre of the working surface."""
@@ -189,3 +190,9 @@ def at_video_frames(plate: ForcePlate, rate: float, n_frames: int) -> ForcePlate
     force = centred_means(plate.force, ratio)[:n_frames]
     moment = centred_means(plate.moment, ratio)[:n_frames]
     return ForcePlate(corners=plate.corners, force=force, moment=moment, rate=rate)
+
+
+def plate_samples(plate: ForcePlate) -> np.ndarray:
+    """Channels Fx Fy Fz [N] Mx My Mz [N*mm] of a type 2 plate with its origin in the surface, shape (n_samples, 6)."""
+    rotation = _rotation(plate.corners)
+    return np.hstack([plate.force @ rotation, MILLIMETRES * plate.moment @ rotation])

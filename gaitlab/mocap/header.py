@@ -78,7 +78,8 @@ def _check_start(path: Path, start: bytes, size: int, largest: int) -> None:
 def parse_header(start: bytes, parameters: bytes) -> Header:
     """Sizes from the header section and the parameter section of a file.
 
-    Byte 3 of the parameter section tells the processor type. The header may keep the frame range of the original capture; POINT:FRAMES then states fewer.
+    Byte 3 of the parameter section tells the processor type. The header may keep the frame range of the original
+    capture; POINT:FRAMES then states fewer.
     """
     processor = parameters[3]
     order = ">" if processor == MIPS else "<"

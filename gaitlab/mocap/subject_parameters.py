@@ -119,3 +119,36 @@ def _radian(found: Mapping[str, float], raw: RawRecording) -> float:
     angles = [abs(value) for name, value in found.items() if name[1:] in SIDED_ANGLES]
     degrees = "workstation" in software or any(value > LARGEST_ANGLE for value in angles)
     return float(np.pi / 180.0) if degrees else 1.0
+
+
+def file_parameters(parameters: Mapping[str, float]) -> dict[str, float]:
+    """The parameters under Nexus' names and in its units (mm, kg, rad): what `subject_parameters` reads back.
+
+    Args:
+        parameters: Our names to SI values; names that Nexus does not have are left out.
+    """
+    units = {"mass": ("Bodymass", 1.0), "height": ("Height", 1e3)}
+    units |= {"inter_asis_distance": ("InterAsisDistance", 1e3), "marker_diameter": ("MarkerDiameter", 1e3)}
+    for side in ("left", "right"):
+        letter = side[0].upper()
+        units |= {f"{side}_{key}": (letter + name, 1e3) for key, name in _NEXUS_LENGTHS.items()}
+        units |= {f"{side}_{key}": (letter + name, 1.0) for key, name in _NEXUS_ANGLES.items()}
+    return {units[key][0]: value * units[key][1] for key, value in parameters.items() if key in units}
+
+
+_NEXUS_LENGTHS = {
+    "leg_length": "LegLength",
+    "knee_width": "KneeWidth",
+    "ankle_width": "AnkleWidth",
+    "asis_trochanter": "AsisTrocanterDistance",
+    "sole_delta": "SoleDelta",
+}
+_NEXUS_ANGLES = {
+    "thigh_rotation": "ThighRotation",
+    "shank_rotation": "ShankRotation",
+    "tibial_torsion": "TibialTorsion",
+    "static_plantar_flexion": "StaticPlantFlex",
+    "static_rotation": "StaticRotOff",
+    "ankle_abduction": "AnkleAbAdd",
+    "foot_flat": "FootFlat",
+}
