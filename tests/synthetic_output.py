@@ -18,6 +18,7 @@ CURVES = {
 }
 CRITERIA = ("stability", "torque", "hip_adduction_torque", "hip_rotation_torque")
 SEGMENTS = ("pelvis", "right_thigh", "right_shank", "right_foot", "left_thigh", "left_shank", "left_foot")
+TIPS = ("right_toe", "left_toe")
 CONTACTS = ("right_heel", "right_toe", "left_heel", "left_toe")
 BONES = ((0, 1), (1, 2), (2, 3), (3, 7), (0, 4), (4, 5), (5, 6), (6, 8))
 MASS, RATE, N_FRAMES, STRIDE = 42.0, 100.0, 241, 1.1
@@ -55,7 +56,7 @@ def walk_arrays():
         "q_optimal": 0.95 * q,
         "forces_optimal": forces,
         "contact_names": np.array(CONTACTS),
-        "segment_names": np.array(SEGMENTS),
+        "segment_names": np.array(SEGMENTS + TIPS),
         "segment_positions_measured": measured,
         "segment_positions_optimal": optimal,
         "markers": np.concatenate([measured + (0.03, 0.0, 0.02), measured - (0.03, 0.0, 0.0)], axis=1),

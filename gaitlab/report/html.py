@@ -16,7 +16,7 @@ INTENDED_USE = (
     "Intended use: research tool, not a stand-alone diagnosis. The numbers describe recordings and a model; decisions "
     "about a person need a qualified clinician and further examination."
 )
-MOST_TRIALS = 6
+MOST_TRIALS = 4
 """Trials shown in full, so that the page stays below 1.5 MB; the rest have their own reports."""
 # No script, no image, no request: what a hostile file name could smuggle in would not run.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"

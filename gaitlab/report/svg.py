@@ -12,6 +12,7 @@ import numpy as np
 
 _ENTER = "M"
 _CONTINUE = "L"
+_MOST_POINTS = 150
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,8 @@ class Axes:
 
 def number(value: float) -> str:
     """Write a coordinate with one decimal, without a trailing zero and without a negative zero."""
-    return f"{value + 0.0:.1f}".removesuffix(".0").replace("-0.0", "0")
+    written = f"{value:.1f}".removesuffix(".0")
+    return "0" if written == "-0" else written
 
 
 def attributes(values: Mapping[str, object]) -> str:
@@ -79,8 +81,19 @@ def rectangle(x: float, y: float, width: float, height: float, **values: object)
     return element("rect", x=float(x), y=float(y), **size, **values)
 
 
+def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Every k-th of the samples, both of shape (n,), so that about 150 are left; a gap between two stays a gap."""
+    step = int(np.ceil(len(y) / _MOST_POINTS))
+    if step <= 1:
+        return x, y
+    starts = np.arange(0, len(y), step)
+    whole = np.array([np.isfinite(y[start : start + step]).all() for start in starts])
+    return x[starts], np.where(whole, y[starts], np.nan)
+
+
 def curve(axes: Axes, x: np.ndarray, y: np.ndarray, **values: object) -> str:
     """Draw y over x, both of shape (n,); a value that is not finite interrupts the line."""
+    x, y = thinned(x, y)
     step, parts = _ENTER, list[str]()
     for abscissa, ordinate in zip(x.tolist(), y.tolist(), strict=True):
         if not (np.isfinite(abscissa) and np.isfinite(ordinate)):
@@ -93,7 +106,8 @@ def curve(axes: Axes, x: np.ndarray, y: np.ndarray, **values: object) -> str:
 
 def area(axes: Axes, x: np.ndarray, lower: np.ndarray, upper: np.ndarray, **values: object) -> str:
     """Fill the band between two curves, all of shape (n,); values that are not finite count as zero."""
-    x, lower, upper = (np.nan_to_num(v, posinf=0.0, neginf=0.0) for v in (x, lower, upper))
+    lower, upper = (np.nan_to_num(v, posinf=0.0, neginf=0.0) for v in (lower, upper))
+    x, (_, lower), (_, upper) = thinned(x, lower)[0], thinned(x, lower), thinned(x, upper)
     outline = [*zip(x, upper, strict=True), *zip(x[::-1], lower[::-1], strict=True)]
     points = " ".join(f"{number(axes.x(a))},{number(axes.y(b))}" for a, b in outline)
     return element("polygon", points=points, **values)

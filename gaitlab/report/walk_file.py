@@ -95,7 +95,7 @@ def read_angles(directory: Path) -> Angles | None:
         table = np.array([[float(cell) if cell else np.nan for cell in row] for row in rows], dtype=float)
     except (OSError, ValueError, csv.Error) as error:
         raise OutputError(f"{path} is not a table of numbers ({error}); run 'gaitlab analyse' again") from error
-    columns = dict(zip(header, table.reshape(len(rows), -1).T, strict=False))
+    columns = dict(zip(header, table.T, strict=True)) if table.shape == (len(rows), len(header)) else {}
     if "time" not in columns:
-        raise OutputError(f"{path} has no column 'time'; run 'gaitlab analyse' again")
+        raise OutputError(f"{path} has no column 'time' or no rows; run 'gaitlab analyse' again")
     return Angles(time=columns.pop("time"), curves=columns)
