@@ -190,7 +190,6 @@ class WeightsEntry(msgspec.Struct, frozen=True, kw_only=True):
     comparison: Comparison | None = None
     strides: list[StrideWeights] = []
     pooled: PooledWeights | None = None
-    notes: list[str] = []
 
 
 class GapEntry(msgspec.Struct, frozen=True, kw_only=True):

@@ -67,9 +67,12 @@ def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: Weig
 
 
 def _warnings(session: Session, trials: Sequence[TrialAnalysis]) -> list[str]:
-    prefixes = {trial.name: f"{trial.name}: " if len(trials) > 1 else "" for trial in trials}
-    own = [prefixes[trial.name] + warning for trial in trials for warning in trial.warnings]
+    own = [_named(trial.name, warning) for trial in trials for warning in trial.warnings]
     return list(dict.fromkeys([*session.warnings, *own]))
+
+
+def _named(trial: str, warning: str) -> str:
+    return warning if warning.startswith(trial) else f"{trial}: {warning}"
 
 
 def _inputs(session: Session, trials: Sequence[TrialAnalysis]) -> list[InputFile]:

@@ -2,22 +2,23 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import inf
+from math import pi
 from typing import Literal
 
+from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotFound, ProblemError
 from ..mocap.subject_parameters import LENGTHS, SIDED_ANGLES, SIDED_LENGTHS
 from ..multibody.anthropometry import AnthropometryName
 from ..walking.criteria import THESIS, by_name
 
 MASS_RANGE = (1.0, 500.0)  # [kg]
-SIDED = (*SIDED_LENGTHS.values(), *((name, -inf, inf) for name in SIDED_ANGLES.values()))
 PLAUSIBLE = (
-    {"mass": MASS_RANGE}
-    | {name: (low, high) for name, low, high in LENGTHS.values()}
-    | {f"{side}_{name}": (low, high) for side in ("left", "right") for name, low, high in SIDED}
+    {"mass": (*MASS_RANGE, "kg")}
+    | {name: (low, high, "m") for name, low, high in LENGTHS.values()}
+    | {f"{side}_{name}": (low, high, "m") for side in SIDES for name, low, high in SIDED_LENGTHS.values()}
+    | {f"{side}_{name}": (-pi, pi, "rad") for side in SIDES for name in SIDED_ANGLES.values()}
 )
-"""Names of body parameters that may be given, with their plausible range [kg, m, rad]."""
+"""Body parameters that may be given: lowest and highest plausible value, unit."""
 
 StaticOffsets = Literal["computed", "file"]
 
@@ -55,6 +56,6 @@ class AnalysisOptions:
 def _check_parameter(name: str, value: float) -> None:
     if name not in PLAUSIBLE:
         raise NotFound("body parameter", name, PLAUSIBLE)
-    low, high = PLAUSIBLE[name]
+    low, high, unit = PLAUSIBLE[name]
     if not low <= value <= high:
-        raise InvalidSubject(f"{name} is {value:g}: give a value from {low:g} to {high:g} (kg, m or rad)")
+        raise InvalidSubject(f"{name} is {value:g}: give a value from {low:.4g} to {high:.4g} {unit}")

@@ -10,7 +10,7 @@ from ..clinical.document import CURVES, SIDES, CalibrationEntry
 from ..clinical.spatiotemporal import Spatiotemporal, cycle_spatiotemporal
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.kinematics import InverseKinematics
-from ..mocap.cycles import Cycle, cycles, full_strides, visible_strides
+from ..mocap.cycles import Cycle, full_strides, visible_strides
 from ..mocap.recording import Event, Recording, Side
 from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap
@@ -48,13 +48,13 @@ class TrialAnalysis:
 
 
 def full_cycles(recording: Recording, events: tuple[Event, ...]) -> tuple[Cycles, tuple[str, ...]]:
-    """Full strides of both sides, and a warning for each side without one and each stride with missing markers.
+    """Full strides of both sides with all markers, and a warning for each other stride and each side without one.
 
     Raises:
-        InvalidRecording: No stride is full, or in none all markers are seen.
+        InvalidRecording: There is no such stride at all.
     """
-    _, warnings = visible_strides(recording, full_strides(recording.name, events))
-    found: dict[Side, tuple[Cycle, ...]] = {side: cycles(events, side) for side in SIDES}
+    usable, warnings = visible_strides(recording, full_strides(recording.name, events))
+    found: Cycles = {side: tuple(stride for stride in usable if stride.side == side) for side in SIDES}
     empty = tuple(f"no full stride of the {side} side" for side in SIDES if not found[side])
     return found, (*warnings, *empty)
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from gaitlab.clinical.cycle_average import average, complete, time_normalise
 from gaitlab.mocap.cycles import Cycle
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from gaitlab.clinical.spatiotemporal import cycle_spatiotemporal, mean, normalise, standard_deviation
 from gaitlab.mocap.cycles import Cycle
 

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from gaitlab.pipelines.gait_frame import gait_to_lab, lab_to_gait
 
 

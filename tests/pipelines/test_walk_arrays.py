@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+
 from gaitlab.mocap.recording import Event, ForcePlate
 from gaitlab.pipelines.walk_arrays import centred_means, plate_at_frames, support_phases
 

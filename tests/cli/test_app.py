@@ -1,0 +1,39 @@
+import json
+
+import pytest
+
+import gaitlab as package
+
+COMMANDS = ("analyse", "inspect", "view", "schema", "demo", "demo-data")
+
+
+def test_version(gaitlab):
+    assert gaitlab("--version")[:2] == (0, package.__version__ + "\n")
+
+
+def test_without_a_command_the_commands_are_listed(gaitlab):
+    code, out, _ = gaitlab()
+    assert code == 0
+    assert all(command in out for command in COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(gaitlab, command):
+    code, out, _ = gaitlab(command, "--help")
+    assert code == 0
+    assert "Usage" in out
+
+
+def test_schema_is_json_and_names_the_parts_of_the_contract(gaitlab):
+    code, out, _ = gaitlab("schema")
+    document = json.loads(out)["$defs"]["Document"]["properties"]
+    assert code == 0
+    assert {"version", "inputs", "subject", "events", "spatiotemporal", "kinematics", "weights", "warnings"} <= set(
+        document
+    )
+
+
+def test_unknown_commands_are_refused_in_one_line(gaitlab):
+    code, _, err = gaitlab("analyze")
+    assert code == 2
+    assert len(err.strip().splitlines()) == 1
