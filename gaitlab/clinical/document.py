@@ -190,6 +190,8 @@ class WeightsEntry(msgspec.Struct, frozen=True, kw_only=True):
     comparison: Comparison | None = None
     strides: list[StrideWeights] = []
     pooled: PooledWeights | None = None
+    notes: list[str] = []
+    """What a reader should know about these weights, sentences."""
 
 
 class GapEntry(msgspec.Struct, frozen=True, kw_only=True):

@@ -1,0 +1,129 @@
+"""Issue 2, lines 1 and 2: joint centres, curves, whole-model kinematics, events."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from registry import CHILDREN, Row, measurement
+from vicon import SIDES, recording, worst_centre, worst_curve
+
+from gaitlab.inverse.conventional import joint_kinematics
+from gaitlab.inverse.static import CalibrationSettings, calibrate_subject
+from gaitlab.mocap.events import detect_events
+from gaitlab.mocap.recording import Recording
+from gaitlab.multibody.scaling import SubjectSettings
+from gaitlab.pipelines.model import person_model, whole_model_motion
+
+WALKS = ("static", "straight")
+ADULT = (("BP01", "BP06"), ("BP08", "BP15"))
+EVENT_FILES = (
+    *(f"children/{child}/{kind}_*.c3d" for child in CHILDREN for kind in ("straight", "turn")),
+    "fmc_adult/*BP06.c3d",
+    "fmc_adult/*BP15.c3d",
+    "ktk_walk/walk.c3d",
+)
+INSIDE = 0.1  # [s] from the ends of the trial
+MATCH = 0.25  # [s]
+
+
+@measurement(issue=2, line=1)
+def direct_model_of_children() -> Iterator[Row]:
+    for child in CHILDREN:
+        static = recording(f"children/{child}/static_*.c3d")
+        for kind in WALKS:
+            walk = recording(f"children/{child}/{kind}_*.c3d")
+            yield from _direct(static, walk, "file", 0.1, f"{child} {kind}")
+            yield from _direct(static, walk, "static", 0.2, f"{child} {kind}")
+
+
+@measurement(issue=2, line=1)
+def direct_model_of_adults() -> Iterator[Row]:
+    for static, walk in ADULT:
+        files = (recording(f"fmc_adult/*{name}.c3d") for name in (static, walk))
+        yield from _direct(*files, "static", 0.2, f"fmc_adult {walk}")
+    stairs = (recording(f"stairs_adult/{name}_trial.c3d") for name in ("Static", "Movement"))
+    yield from _direct(*stairs, "static", 0.2, "stairs_adult")
+    yield from _direct(None, recording("ktk_walk/walk.c3d"), "file", 0.1, "ktk_walk, no static")
+
+
+def _direct(static: Recording | None, walk: Recording, offsets: str, limit: float, subject: str) -> Iterator[Row]:
+    calibration = calibrate_subject(static, walk, {}, CalibrationSettings(offsets=offsets))
+    kinematics = joint_kinematics(walk, calibration)
+    words = f"offsets of the {offsets}"
+    centre, curve = worst_centre(walk, kinematics), worst_curve(walk, kinematics)
+    yield Row(quantity=f"worst joint centre, {words}", value=centre, limit="<= 0.1", unit="mm", subject=subject)
+    yield Row(quantity=f"worst curve, {words}", value=curve, limit=f"<= {limit}", unit="deg", subject=subject)
+
+
+@measurement(issue=2, line=1)
+def whole_model_kinematics() -> Iterator[Row]:
+    for child in CHILDREN:
+        static, walk = (recording(f"children/{child}/{kind}_*.c3d") for kind in WALKS)
+        calibration = calibrate_subject(static, walk, {})
+        kinematics = joint_kinematics(walk, calibration)
+        subject = person_model(static, joint_kinematics(static, calibration), calibration.parameters, SubjectSettings())
+        motion = whole_model_motion(subject, walk, kinematics)
+        whole = np.all([np.isfinite(angle) for angle in kinematics.angles.values()], axis=0)
+        distances = np.concatenate([distance[whole] for distance in motion.residuals.values()])
+        residual = 1e3 * float(np.sqrt(np.nanmean(distances**2)))
+        yield Row(quantity="marker residual, valid frames", value=residual, limit="<= 15", unit="mm", subject=child)
+        milliseconds = _per_frame(lambda: whole_model_motion(subject, walk, kinematics), walk.n_frames)
+        yield Row(quantity="whole model per frame", value=milliseconds, limit="<= 0.3", unit="ms", subject=child)
+        milliseconds = _per_frame(lambda: joint_kinematics(walk, calibration), walk.n_frames)
+        yield Row(quantity="direct model per frame", value=milliseconds, limit="<= 0.05", unit="ms", subject=child)
+
+
+def _per_frame(work, n_frames: int) -> float:
+    """Best of five runs [ms per frame]."""
+    seconds = []
+    for _ in range(5):
+        start = time.perf_counter()
+        work()
+        seconds.append(time.perf_counter() - start)
+    return 1e3 * min(seconds) / n_frames
+
+
+@measurement(issue=2, line=2)
+def events_found_again() -> Iterator[Row]:
+    errors, wrong, total = [], 0, 0
+    for pattern in EVENT_FILES:
+        walk = recording(pattern)
+        found, missed, false = _match(walk)
+        errors += found
+        wrong += missed + false
+        total += len(found) + missed
+        worst = max(map(abs, found), default=0.0)
+        yield Row(quantity="worst event", value=1e3 * worst, limit="", unit="ms", subject=walk.name)
+    everything = 1e3 * np.abs(errors)
+    yield Row(quantity="median error", value=float(np.median(everything)), limit="<= 20", unit="ms", subject="all")
+    yield Row(
+        quantity="95 % of errors", value=float(np.percentile(everything, 95)), limit="<= 50", unit="ms", subject="all"
+    )
+    yield Row(quantity="missed and false", value=100.0 * wrong / total, limit="<= 2", unit="%", subject="all")
+    yield Row(quantity="events", value=float(total), limit="", unit="", subject="all")
+
+
+def _match(walk: Recording) -> tuple[list[float], int, int]:
+    """Errors [s] of events matched one to one, the number missed and the number of false ones."""
+    end = (walk.n_frames - 1) / walk.rate - INSIDE
+    found = list(detect_events(replace(walk, events=())))
+    errors, missed = [], 0
+    for event in walk.events:
+        if not INSIDE <= event.time <= end:
+            continue
+        near = [e for e in found if (e.side, e.kind) == (event.side, event.kind) and abs(e.time - event.time) <= MATCH]
+        if not near:
+            missed += 1
+            continue
+        nearest = min(near, key=lambda e: abs(e.time - event.time))
+        found.remove(nearest)
+        errors.append(nearest.time - event.time)
+    edges = [(e.side, e.kind, e.time) for e in walk.events if not INSIDE <= e.time <= end]
+    false = [
+        e
+        for e in found
+        if INSIDE <= e.time <= end
+        and not any((e.side, e.kind) == edge[:2] and abs(e.time - edge[2]) <= MATCH for edge in edges)
+    ]
+    return errors, missed, len([e for e in false if e.side in SIDES])
