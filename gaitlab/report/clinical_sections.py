@@ -1,6 +1,6 @@
 """Sections of the clinical part: who and what, kinematics page, spatiotemporal table, events."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -77,8 +77,8 @@ def _marks(side: Mapping[str, object]) -> Marks:
     )
 
 
-def kinematics_section(result: Result, angles: Angles | None) -> str:
-    """Average page, and the consistency page with every cycle where there is more than one."""
+def kinematics_section(result: Result) -> str:
+    """Average page: mean and standard deviation of each curve over the cycles."""
     title = tag("h2", "Kinematics")
     if not any(result.kinematics.get(name) for name in CURVES):
         why = "no side has a complete cycle with all markers" if result.kinematics else "result.json holds none"
@@ -90,10 +90,9 @@ def kinematics_section(result: Result, angles: Angles | None) -> str:
         if side not in result.kinematics.get(name, {})
     ]
     gap = missing(", ".join(absent), "result.json has no complete cycle of them") if absent else ""
-    marks = marks_of(result)
-    average = average_figure(result.kinematics, marks)
+    average = average_figure(result.kinematics, marks_of(result))
     body = paragraph(_cycles_used(result), "lead") + average + paragraph(_CONVENTIONS, "note") + gap
-    return tag("section", title + body, "page") + _consistency(result, angles, marks)
+    return tag("section", title + body, "page")
 
 
 def _cycles_used(result: Result) -> str:
@@ -108,23 +107,29 @@ def _cycles_used(result: Result) -> str:
     return f"Number of cycles: {', '.join(parts)}." if parts else "Number of cycles: not stated."
 
 
-def _consistency(result: Result, angles: Angles | None, marks: Mapping[str, Marks]) -> str:
+def consistency_section(result: Result, trials: Sequence[tuple[Result, Angles | None]], why: str) -> str:
+    """Every cycle of every trial; `why` explains trials without angles per frame."""
     title = tag("h2", "All cycles")
-    if angles is None:
-        return tag("section", title + missing("every cycle", "angles.csv is absent"))
-    curves = every_cycle(result, angles)
-    count = max((len(values) for sides in curves.values() for values in sides.values()), default=0)
+    known = [every_cycle(trial, angles) for trial, angles in trials if angles is not None]
+    if not known:
+        return tag("section", title + missing("every cycle", why or "angles.csv is absent"))
+    curves = {
+        name: {side: [c for found in known for c in found.get(name, {}).get(side, [])] for side in SIDES}
+        for name in CURVES
+    }
+    count = max(len(values) for sides in curves.values() for values in sides.values())
     if count < 2:
-        why = "there is no side with two complete cycles in this trial, so the average above says it all"
-        return tag("section", title + missing("every cycle", why))
-    return tag("section", title + consistency_figure(curves, marks), "page")
+        reason = "no side has two complete cycles, so the average says it all"
+        return tag("section", title + missing("every cycle", reason))
+    return tag("section", title + consistency_figure(curves, marks_of(result)), "page")
 
 
 def every_cycle(result: Result, angles: Angles) -> dict[str, dict[str, list[np.ndarray]]]:
-    """Curves of all cycles [deg], shape (101,) each: curve name to side to cycles."""
-    if len(angles.time) < 2:
+    """Curves of all cycles of one trial [deg], shape (101,) each: curve name to side to cycles."""
+    length = float(angles.time[-1] - angles.time[0])
+    if length <= 0.0:
         return {}
-    rate = (len(angles.time) - 1) / float(angles.time[-1] - angles.time[0])
+    rate = (len(angles.time) - 1) / length
     curves = dict[str, dict[str, list[np.ndarray]]]()
     for name in CURVES:
         sides = dict[str, list[np.ndarray]]()

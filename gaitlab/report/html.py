@@ -5,7 +5,13 @@ from html import escape
 from pathlib import Path
 
 from ..errors import OutputError
-from .clinical_sections import events_section, kinematics_section, spatiotemporal_section, subject_section
+from .clinical_sections import (
+    consistency_section,
+    events_section,
+    kinematics_section,
+    spatiotemporal_section,
+    subject_section,
+)
 from .markup import paragraph, tag
 from .quality_sections import provenance_section, quality_section, warnings_box
 from .result import Result, read_result, trial_directories
@@ -44,13 +50,14 @@ def render(directory: Path) -> str:
     """The page as text."""
     overall = read_result(directory)
     trials = [path for path in trial_directories(directory) if path != directory]
-    shown = [(path, read_result(path)) for path in trials[:MOST_TRIALS]]
+    read = [(path, read_result(path)) for path in trials]
+    shown = read[:MOST_TRIALS]
     parts = [
-        _header(overall, [result for _, result in shown]),
+        _header(overall, [result for _, result in read]),
         _contents([result for _, result in shown]),
-        warnings_box([("", overall), *((result.name, result) for _, result in shown)]),
+        warnings_box([("", overall), *((result.name, result) for _, result in read)]),
         subject_section(overall),
-        _body(overall, directory, overall_only=bool(trials)),
+        _overall(overall, read) if trials else _single(overall, directory),
         *(_trial(number, path, result) for number, (path, result) in enumerate(shown, 1)),
         _omitted(trials[MOST_TRIALS:]),
         provenance_section(overall),
@@ -90,21 +97,38 @@ def _contents(trials: Sequence[Result]) -> str:
     return tag("nav", "Trials: " + " · ".join(links))
 
 
-def _body(result: Result, directory: Path, overall_only: bool) -> str:
-    """Sections of one document; the overall one of several trials leaves what belongs to a trial to the trials."""
-    angles, angles_why = _angles(directory)
-    parts = [kinematics_section(result, angles), angles_why] if result.kinematics or not overall_only else []
-    if result.part("spatiotemporal") or not overall_only:
-        parts.append(spatiotemporal_section(result))
-    parts.append(weights_section(result))
-    if not overall_only:
-        parts += [walk_section(result, *_walk(directory)), quality_section(result), events_section(result)]
+def _overall(result: Result, trials: Sequence[tuple[Path, Result]]) -> str:
+    """What the trials have in common: pooled curves, all cycles, pooled weights."""
+    read = [(trial, *_angles(path)) for path, trial in trials]
+    parts = [
+        kinematics_section(result),
+        consistency_section(
+            result, [(trial, angles) for trial, angles, _ in read], " ".join(why for *_, why in read).strip()
+        ),
+        spatiotemporal_section(result),
+        weights_section(result),
+    ]
+    return "".join(parts)
+
+
+def _single(result: Result, directory: Path) -> str:
+    """Everything about one trial."""
+    angles, why = _angles(directory)
+    parts = [
+        kinematics_section(result),
+        consistency_section(result, [(result, angles)], why),
+        spatiotemporal_section(result),
+        weights_section(result),
+        walk_section(result, *_walk(directory)),
+        quality_section(result),
+        events_section(result),
+    ]
     return "".join(parts)
 
 
 def _trial(number: int, directory: Path, result: Result) -> str:
     title = tag("h1", f"Trial: {escape(result.name)}")
-    return tag("article", title + _body(result, directory, overall_only=False), identifier=f"trial-{number}")
+    return tag("article", title + _single(result, directory), identifier=f"trial-{number}")
 
 
 def _omitted(directories: Sequence[Path]) -> str:
@@ -113,7 +137,7 @@ def _omitted(directories: Sequence[Path]) -> str:
     names = ", ".join(path.name for path in directories)
     return paragraph(
         f"Not shown: {names}. Reason: only the first {MOST_TRIALS} trials are shown in full, to keep this page "
-        "small; the directories of these trials hold their results.",
+        "small; the directories of the others hold their own reports.",
         "missing",
     )
 
@@ -129,4 +153,4 @@ def _angles(directory: Path) -> tuple[Angles | None, str]:
     try:
         return read_angles(directory), ""
     except OutputError as error:
-        return None, paragraph(str(error), "missing")
+        return None, str(error)

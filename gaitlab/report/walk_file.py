@@ -18,7 +18,7 @@ class Walk:
     time: np.ndarray
     """Time from the first stored frame [s], shape (n,)."""
     arrays: Mapping[str, np.ndarray]
-    """The file's other arrays by name; see `get` for those with one row per frame."""
+    """The other arrays of the file by name, shape (n, ...) for those with one row per frame."""
 
     def get(self, name: str) -> np.ndarray | None:
         """Array with one row per frame, shape (n, ...), or None if absent or of another length."""
