@@ -8,7 +8,7 @@ from ..clinical.cycle_average import time_normalise
 from ..clinical.document import CURVES, SIDES
 from ..mocap.cycles import cycles
 from .kinematics_figure import Marks, average_figure, consistency_figure
-from .markup import ABSENT, facts, fixed, label, missing, paragraph, plain, table, tag
+from .markup import ABSENT, facts, fixed, label, missing, paragraph, plain, table, tag, unit_of
 from .result import Result, first_real, mapping, real, sequence
 from .walk_file import Angles
 
@@ -20,17 +20,24 @@ _CONVENTIONS = (
 
 
 def subject_section(result: Result) -> str:
-    """Subject and input files with their fingerprints."""
+    """Subject, input files with their fingerprints, body parameters, segments."""
     members = result.part("subject")
-    known = {key: value for key, value in members.items() if key not in {"segments", "assumed"}}
-    subject = (
-        facts(known, "Subject (SI units: lengths in m, angles in rad)")
-        if known
-        else missing("subject", "result.json says nothing about it")
-    )
+    known = {key: value for key, value in members.items() if key not in {"segments", "assumed", "parameters"}}
+    subject = facts(known, "Subject") if known else missing("subject", "result.json says nothing about it")
     assumed = ", ".join(str(name) for name in sequence(members.get("assumed")))
     estimated = paragraph(f"Estimated, neither measured nor given: {assumed}.", "alert") if assumed else ""
-    return tag("section", tag("h2", "Subject and inputs") + subject + estimated + _segments(members) + _inputs(result))
+    parts = [subject, estimated, _inputs(result), _parameters(members), _segments(members)]
+    return tag("section", tag("h2", "Subject and inputs") + "".join(parts))
+
+
+def _parameters(subject: Mapping[str, object]) -> str:
+    """Body parameters, left beside right; mass and height stand above."""
+    values = {key: value for key, value in mapping(subject.get("parameters")).items() if key not in {"mass", "height"}}
+    sided = {key.removeprefix(f"{side}_") for key in values for side in SIDES if key.startswith(f"{side}_")}
+    rows = [(label(name), *(plain(values.get(f"{side}_{name}")) for side in SIDES), "") for name in sorted(sided)]
+    rows += [(label(name), "", "", plain(values[name])) for name in sorted(values) if name.split("_")[0] not in SIDES]
+    caption = "Body parameters (lengths in m, angles in rad)"
+    return table(("", "left", "right", "body"), rows, caption, "sides") if rows else ""
 
 
 def _segments(subject: Mapping[str, object]) -> str:
@@ -152,18 +159,18 @@ def spatiotemporal_section(result: Result) -> str:
     if not keys:
         return tag("section", title + missing("spatiotemporal parameters", "no side has a complete cycle"))
     rows = [
-        (label(key), *(_with_sd(real(means[s].get(key)), real(mapping(sides[s].get("sd")).get(key))) for s in SIDES))
-        for key in keys
+        (label(key), *(_with_sd(key, means[side], mapping(sides[side].get("sd"))) for side in SIDES)) for key in keys
     ]
     rows.append(("Cycles", *(plain(sides[side].get("n_cycles")) for side in SIDES)))
     norm = paragraph("No normative column: no reference data are loaded.", "note")
     return tag("section", title + table(("", "left", "right"), rows, kind="sides") + norm)
 
 
-def _with_sd(value: float | None, sd: float | None) -> str:
+def _with_sd(key: str, means: Mapping[str, object], deviations: Mapping[str, object]) -> str:
+    value, sd = real(means.get(key)), real(deviations.get(key))
     if value is None:
         return ABSENT
-    decimals = 1 if abs(value) >= 10.0 else 2 if abs(value) >= 1.0 else 3
+    decimals = {"%": 1, "steps/min": 1, "m/s": 2}.get(unit_of(key), 3)
     return fixed(value, decimals) + (f" ± {fixed(sd, decimals)}" if sd is not None else "")
 
 

@@ -149,7 +149,7 @@ def _draw_panel(panel: Panel, content: str, extent: tuple[float, float] | None, 
         parts.append(text("% of cycle", axes.right, axes.bottom + 29.0, **{"class": "note", "text_anchor": "end"}))
     if extent is not None and (extent[0] < low or extent[1] > high):
         words = f"leaves scale: {extent[0]:.0f} to {extent[1]:.0f}"
-        parts.append(text(words, axes.right, axes.top - 8.0, **{"class": "alert", "text_anchor": "end"}))
+        parts.append(text(words, axes.left + 6.0, axes.top + 15.0, **{"class": "alert"}))
     return f'<g data-curve="{panel.name}">{"".join(parts)}</g>'
 
 

@@ -12,7 +12,7 @@ from .walk_file import Walk
 GRAVITY = 9.81  # [m/s^2]
 _WIDTH, _COLUMN, _PANEL, _TOP = 1000.0, 325.0, 250.0, 58.0
 _JOINTS = {"pelvis": "Pelvis", "thigh": "Hip", "shank": "Knee", "foot": "Ankle", "trunk": "Trunk"}
-_AXES = ("about y (flexion)", "about x (ab/adduction)", "about z (rotation)")
+_AXES = ("about y (sagittal)", "about x (frontal)", "about z (transverse)")
 _SHADES = ("#eef1f4", "#ffffff")
 
 
@@ -149,7 +149,7 @@ def _panel(walk: Walk, axes: Axes, traces: Sequence[Trace], title: str) -> str:
         + frame(axes, ticks(*axes.x_range, 5), ticks(*axes.y_range, 4))
         + clipped(axes, "".join(lines))
         + text(title, axes.left, axes.top - 7.0, **{"class": "title"})
-        + text("s", axes.right + 4.0, axes.bottom + 15.0, **{"class": "tick"})
+        + text("s", axes.right + 15.0, axes.bottom + 15.0, **{"class": "tick"})
     )
 
 

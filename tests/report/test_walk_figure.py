@@ -34,7 +34,7 @@ def test_forces_have_a_unit(mass, unit):
 
 def test_joints_are_named_after_their_segments():
     drawn = joints_figure(walk())
-    assert all(f">{joint} about y (flexion)<" in drawn for joint in ("Pelvis", "Hip", "Knee", "Ankle"))
+    assert all(f">{joint} about y (sagittal)<" in drawn for joint in ("Pelvis", "Hip", "Knee", "Ankle"))
     assert drawn.count("stroke-dasharray") > drawn.count("about")
 
 
