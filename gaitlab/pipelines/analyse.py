@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..clinical.document import CalibrationEntry, Document, WeightsEntry
-from ..errors import InvalidRecording
+from ..errors import InvalidRecording, NotConverged
 from ..inverse.conventional import ConventionalKinematics, joint_kinematics
 from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
@@ -21,10 +21,11 @@ from .calibration import assumed_parameters, calibrate_walk
 from .documents import Session, document_of
 from .model import person_model, whole_model_motion
 from .options import AnalysisOptions
+from .pooling import combine_entries
 from .progress import Progress, Step, silent
 from .trial import TrialAnalysis, cycle_curves, full_cycles, trial_spatiotemporal
 from .walk_arrays import measured_arrays
-from .weights import WeightsRequest, identify_weights, pooled_weights
+from .weights import TrialWeights, WeightsRequest, identify_weights
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,12 +87,9 @@ def analyse(
     documents = tuple(document_of(session, [trial], _entry(trial)) for trial in trials)
     together = documents[0]
     if len(trials) > 1:
-        together = document_of(session, trials, pooled_weights({t.name: t.weights for t in trials if t.weights}))
-    failed = [
-        f"{trial.name}: {trial.weights.entry.solver.message or 'the weights did not converge'}"
-        for trial in trials
-        if trial.weights is not None and trial.weights.entry.solver.status != "solved"
-    ]
+        entries = [entry for entry in map(_entry, trials) if entry is not None]
+        together = document_of(session, trials, combine_entries(entries) if entries else None)
+    failed = [f"{trial.name}: {trial.not_converged}" for trial in trials if trial.not_converged]
     return Analysis(trials=trials, documents=documents, document=together, not_converged="; ".join(failed))
 
 
@@ -127,9 +125,9 @@ def _analyse_walk(subject: SubjectModel, walk: _Walk, options: AnalysisOptions, 
     progress(Step(stage="whole-model kinematics", trial=recording.name))
     motion = whole_model_motion(subject, recording, kinematics)
     arrays = measured_arrays(recording, events, subject, motion.q, kinematics.heading)
-    weights = None
+    weights, reason = None, ""
     if options.weights:
-        weights = identify_weights(_request(subject, walk, events, motion, options), progress)
+        weights, reason = _try_weights(_request(subject, walk, events, motion, options), progress)
     return TrialAnalysis(
         recording=recording,
         gaps=walk.gaps,
@@ -143,8 +141,23 @@ def _analyse_walk(subject: SubjectModel, walk: _Walk, options: AnalysisOptions, 
         motion=motion,
         weights=weights,
         arrays=arrays | (dict(weights.arrays) if weights is not None else {}),
-        warnings=_trial_warnings(walk) + stride_warnings + (weights.warnings if weights is not None else ()),
+        warnings=_trial_warnings(walk)
+        + stride_warnings
+        + (weights.warnings if weights is not None else ())
+        + ((reason,) if reason else ()),
+        not_converged=reason,
     )
+
+
+def _try_weights(request: WeightsRequest, progress: Progress) -> tuple[TrialWeights | None, str]:
+    """The weights as far as they came, and why they did not converge, if so."""
+    try:
+        weights = identify_weights(request, progress)
+    except NotConverged as error:
+        return None, str(error)
+    solver = weights.entry.solver
+    reason = "" if solver.status == "solved" else solver.message or "the weights did not converge"
+    return weights, reason
 
 
 def _request(

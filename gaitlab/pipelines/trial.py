@@ -40,6 +40,8 @@ class TrialAnalysis:
     arrays: Mapping[str, np.ndarray]
     """Contents of walk.npz; those with one row per stored frame have shape (n_frames, ...)."""
     warnings: tuple[str, ...]
+    not_converged: str = ""
+    """Why what was asked for did not converge, in words; empty when all is well."""
 
     @property
     def name(self) -> str:

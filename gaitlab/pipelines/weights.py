@@ -42,9 +42,3 @@ def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeight
     """Tracking, continuation and weights of one walk."""
     del progress
     raise ProblemError(f"{request.recording.name}: the weights cannot be computed yet; ask for --no-weights")
-
-
-def pooled_weights(trials: Mapping[str, TrialWeights]) -> WeightsEntry | None:
-    """The weights of several walks of one person together: their mean, and the spread between strides."""
-    del trials
-    return None
