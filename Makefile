@@ -35,8 +35,8 @@ format: $(VENV)/.installed-dev ## rewrite the sources in the house's format
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 
-evidence: $(VENV)/.installed-dev ## measure every "Must hold" line, write benchmarks/evidence/*.csv
-	$(BIN)/python benchmarks/evidence.py
+evidence: $(VENV)/.installed-dev ## measure every "Must hold" line (ONLY=word: some) into benchmarks/evidence/*.csv
+	PYTHONPATH=tests $(BIN)/python benchmarks/evidence.py $(ONLY)
 
 wheel: $(VENV)/.installed-dev ## build dist/*.whl, demo recordings included
 	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .

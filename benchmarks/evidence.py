@@ -1,4 +1,4 @@
-"""Measure the "Must hold" lines of the issues and write them as CSV: `python benchmarks/evidence.py [WORD ...]`.
+"""Measure the "Must hold" lines of the issues and write them as CSV: `make evidence`, or `make evidence ONLY=word`.
 
 With words, only measurements whose name holds one of them run, and only their rows are replaced in the CSV.
 """

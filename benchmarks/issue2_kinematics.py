@@ -6,13 +6,14 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from event_matching import match_events
 from registry import CHILDREN, Row, measurement
 from vicon import recording, worst_centre, worst_curve
 
 from gaitlab.inverse.conventional import joint_kinematics
 from gaitlab.inverse.static import CalibrationSettings, calibrate_subject
 from gaitlab.mocap.events import detect_events
-from gaitlab.mocap.recording import Event, Recording
+from gaitlab.mocap.recording import Recording
 from gaitlab.multibody.scaling import SubjectSettings
 from gaitlab.pipelines.model import person_model, whole_model_motion
 
@@ -25,7 +26,6 @@ EVENT_FILES = (
     "ktk_walk/walk.c3d",
 )
 INSIDE = 0.1  # [s] from the ends of the trial
-MATCH = 0.25  # [s]
 
 
 @measurement(issue=2, line=1)
@@ -90,11 +90,12 @@ def events_found_again() -> Iterator[Row]:
     errors, wrong, total = [], 0, 0
     for pattern in EVENT_FILES:
         walk = recording(pattern)
-        found, missed, false = _match(walk)
-        errors += found
-        wrong += missed + false
-        total += len(found) + missed
-        worst = max(map(abs, found), default=0.0)
+        end = (walk.n_frames - 1) / walk.rate - INSIDE
+        found, missed, false = match_events(walk.events, detect_events(replace(walk, events=())), INSIDE, end)
+        errors += list(found)
+        wrong += len(missed) + len(false)
+        total += len(found) + len(missed)
+        worst = float(np.max(np.abs(found), initial=0.0))
         yield Row(quantity="worst event", value=1e3 * worst, limit="", unit="ms", subject=walk.name)
     everything = 1e3 * np.abs(errors)
     yield Row(quantity="median error", value=float(np.median(everything)), limit="<= 20", unit="ms", subject="all")
@@ -103,27 +104,3 @@ def events_found_again() -> Iterator[Row]:
     )
     yield Row(quantity="missed and false", value=100.0 * wrong / total, limit="<= 2", unit="%", subject="all")
     yield Row(quantity="events", value=float(total), limit="", unit="", subject="all")
-
-
-def _match(walk: Recording) -> tuple[list[float], int, int]:
-    """Errors [s] of events matched one to one, the number missed and the number of false ones."""
-    end = (walk.n_frames - 1) / walk.rate - INSIDE
-    found = list(detect_events(replace(walk, events=())))
-    errors, missed = [], 0
-    for event in walk.events:
-        if not INSIDE <= event.time <= end:
-            continue
-        near = [e for e in found if (e.side, e.kind) == (event.side, event.kind) and abs(e.time - event.time) <= MATCH]
-        if not near:
-            missed += 1
-            continue
-        nearest = min(near, key=lambda e: abs(e.time - event.time))
-        found.remove(nearest)
-        errors.append(nearest.time - event.time)
-    return errors, missed, sum(_lies_between_marked_events(event, walk) for event in found)
-
-
-def _lies_between_marked_events(event: Event, walk: Recording) -> bool:
-    """Whether the file would have marked this event: people mark one or two strides and leave the rest."""
-    marked = [e.time for e in walk.events if e.side == event.side]
-    return min(marked) + MATCH < event.time < max(marked) - MATCH
