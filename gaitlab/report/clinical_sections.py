@@ -20,14 +20,20 @@ _CONVENTIONS = (
 
 
 def subject_section(result: Result) -> str:
-    """Subject, input files with their fingerprints, body parameters, segments."""
+    """Subject and input files with their fingerprints."""
     members = result.part("subject")
     known = {key: value for key, value in members.items() if key not in {"segments", "assumed", "parameters"}}
     subject = facts(known, "Subject") if known else missing("subject", "result.json says nothing about it")
     assumed = ", ".join(str(name) for name in sequence(members.get("assumed")))
     estimated = paragraph(f"Estimated, neither measured nor given: {assumed}.", "alert") if assumed else ""
-    parts = [subject, estimated, _inputs(result), _parameters(members), _segments(members)]
-    return tag("section", tag("h2", "Subject and inputs") + "".join(parts))
+    return tag("section", tag("h2", "Subject and inputs") + subject + estimated + _inputs(result))
+
+
+def body_section(result: Result) -> str:
+    """Body parameters and the segments of the model."""
+    members = result.part("subject")
+    tables = _parameters(members) + _segments(members)
+    return tag("section", tag("h2", "Body") + (tables or missing("body parameters", "result.json holds none")))
 
 
 def _parameters(subject: Mapping[str, object]) -> str:
@@ -50,7 +56,7 @@ def _segments(subject: Mapping[str, object]) -> str:
         )
         for s in segments
     ]
-    return table(("segment", "mass [kg]", "length [m]"), rows, "Model of the body") if rows else ""
+    return table(("segment", "mass [kg]", "length [m]"), rows, "Segments of the model") if rows else ""
 
 
 def _inputs(result: Result) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..errors import OutputError
 from .clinical_sections import (
+    body_section,
     consistency_section,
     events_section,
     kinematics_section,
@@ -60,6 +61,7 @@ def render(directory: Path) -> str:
         _overall(overall, read) if trials else _single(overall, directory),
         *(_trial(number, path, result) for number, (path, result) in enumerate(shown, 1)),
         _omitted(trials[MOST_TRIALS:]),
+        body_section(overall),
         provenance_section(overall),
     ]
     return _page(f"Gait report: {overall.name}", "".join(parts))

@@ -128,7 +128,7 @@ def _page(
     ]
     panels = [_draw_panel(panel, drawn[panel.name], extents[panel.name], marks) for panel in PANELS]
     content = "".join(headings) + "".join(panels) + _legend(marks, legend)
-    return figure(_WIDTH, 46.0 + 4 * _ROW - 22.0, content, "Joint angles over the gait cycle")
+    return figure(_WIDTH, 46.0 + 4 * _ROW - 26.0, content, "Joint angles over the gait cycle")
 
 
 def _draw_panel(panel: Panel, content: str, extent: tuple[float, float] | None, marks: Mapping[str, Marks]) -> str:
