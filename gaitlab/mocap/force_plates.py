@@ -45,7 +45,7 @@ def force_plates(
 def plate_channels(raw: RawRecording) -> frozenset[int]:
     """Columns of the analogue data that belong to plates."""
     channels = raw.numbers("FORCE_PLATFORM", "CHANNEL")
-    return frozenset(int(c) - 1 for c in channels.ravel()[: channels.size])
+    return frozenset(int(channel) - 1 for channel in channels.ravel() if channel > 0)
 
 
 def _used(raw: RawRecording) -> int:

@@ -21,11 +21,11 @@ OUT_OF_MEMORY = ("MemoryError", "bad_alloc", "Cannot allocate memory", "Unable t
 
 @dataclass(frozen=True, kw_only=True)
 class ReaderLimits:
-    """What reading one file may cost. The shared recordings take 0.5 s and 0.4 GB at most."""
+    """What reading one file may cost. The parser takes 8 bytes per byte of the file."""
 
-    file_size: int = 500_000_000
+    file_size: int = 200_000_000
     """Largest file [bytes]."""
-    memory: int = 8_000_000_000
+    memory: int = 4_000_000_000
     """Address space of the reading process [bytes]."""
     seconds: float = 60.0
     """Wall and processor time [s]."""
@@ -74,7 +74,7 @@ def _explain(finished: "subprocess.CompletedProcess[bytes]", limits: ReaderLimit
     lines = finished.stderr.decode("utf-8", "replace").strip().splitlines()
     last = lines[-1] if lines else "no reason given"
     if any(word in line for line in lines[-3:] for word in OUT_OF_MEMORY):
-        return f"reading the C3D file needs more than {limits.memory / 1e9:.1f} GB; the file is damaged or too long"
+        return f"reading the C3D file needs more than {limits.memory / 1e9:.2g} GB; the file is damaged or too long"
     if finished.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return _too_slow(limits)
     if finished.returncode < 0:
