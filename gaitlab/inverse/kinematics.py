@@ -165,7 +165,7 @@ def _known_frames(subject: SubjectModel, used: Mapping[str, np.ndarray], longest
         counts[:, segment] += seen
         most[segment] += bool(seen.any())
     wanted = np.minimum(np.array([3] + [2] * (n_segments - 1)), most)
-    known = np.asarray((counts >= wanted).all(axis=1))
+    known: np.ndarray = np.logical_and.reduce(counts >= wanted, axis=1)
     for first, end in runs(~known):
         if end - first <= longest and first > 0 and end < n:
             known[first:end] = True
@@ -218,14 +218,16 @@ def _fit_trial(trial: _Trial, initial: np.ndarray | None) -> _Fit:
         start[:, 3:] = unwrapped(start[:, 3:])
     else:
         start = _without_gaps(initial)
-    fit = _fit_once(trial, start)
+    fit, far = _fit_once(trial, start), np.zeros(0)
     for _ in range(REPEATS):
         distances = _residuals(trial.subject, trial.markers, fit.q)
-        kept = {
-            name: np.where(distances[name][:, None] <= settings.outlier, y, np.nan) for name, y in trial.markers.items()
-        }
-        if _count_left_out(fit.used, kept) == {} == _count_left_out(kept, fit.used):
+        before, far = far, np.array([distances[name] > settings.outlier for name in trial.markers])
+        if np.array_equal(far, before) or not (far.any() or before.any()):
             break
+        kept = {
+            name: np.where(left_out[:, None], np.nan, y)
+            for left_out, (name, y) in zip(far, trial.markers.items(), strict=True)
+        }
         again = _fit_once(replace(trial, markers=kept), start)
         fit = replace(again, iterations=fit.iterations + again.iterations)
     return fit

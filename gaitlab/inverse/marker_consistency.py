@@ -9,6 +9,9 @@ from gaitlab.multibody.marker_set import CONVENTIONAL
 from gaitlab.multibody.subject import SubjectModel
 from gaitlab.signal.runs import valid_rows
 
+SAMPLES = 40
+"""Frames, spread over the trial, that medians are taken of."""
+
 
 def inconsistent_markers(subject: SubjectModel, markers: Mapping[str, np.ndarray], tolerance: float) -> tuple[str, ...]:
     """Markers whose distances to the others of their segment are not those of the model.
@@ -47,8 +50,9 @@ def distant_markers(
     Finds what distances cannot, labels of the medial and lateral side of a foot swapped, when q comes from few reliable
     markers, as the direct model's does: these, the conventional ones, are not doubted.
     """
-    known = valid_rows(q)
-    if not known.any():
+    known = np.flatnonzero(valid_rows(q))
+    known = known[:: max(1, len(known) // SAMPLES)]
+    if not len(known):
         return ()
     seen = {n: point for n, point in subject.markers.items() if n in markers and n not in CONVENTIONAL}
     model = point_positions(subject, seen, q[known])
@@ -59,10 +63,11 @@ def distant_markers(
 def _distance_errors(subject: SubjectModel, markers: Mapping[str, np.ndarray], names: list[str]) -> np.ndarray:
     """Absolute error of each pair's median distance [m], shape (m, m); NaN on the diagonal and for pairs never seen."""
     m = len(names)
+    places = [markers[name][:: max(1, len(markers[name]) // SAMPLES)] for name in names]
     errors = np.full((m, m), np.nan)
     for i in range(m):
         for j in range(i):
-            seen = np.linalg.norm(markers[names[i]] - markers[names[j]], axis=1)
+            seen = np.linalg.norm(places[i] - places[j], axis=1)
             seen = seen[np.isfinite(seen)]
             if len(seen):
                 here = subject.markers[names[i]].position - subject.markers[names[j]].position

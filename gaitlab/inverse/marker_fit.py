@@ -13,8 +13,8 @@ from gaitlab.inverse.kinematics_settings import InverseKinematicsSettings
 from gaitlab.inverse.marker_moments import MarkerMoments, Slope, gauss_newton_matrix, marker_slope
 from gaitlab.multibody.subject import SubjectModel
 
-SHRINKING = 0.3
-"""Steps that shrink at least by this factor keep the factorised matrix."""
+SHRINKING = 0.7
+"""Steps that shrink at least by this factor keep the factorised matrix, after the second."""
 
 UNDAMPED = 1e-9
 """Smallest Levenberg damping, relative to the diagonal."""
@@ -107,7 +107,7 @@ def minimise(problem: FitProblem) -> MarkerFit:
         previous, moved = moved, float(np.abs(step).max())
         if _value(there, penalties, trial) <= _value(here, penalties, q) * (1 + 1e-12):
             q, here = trial, there
-            fresh, damping = moved > SHRINKING * previous or iteration == 1, max(damping / 10, UNDAMPED)
+            fresh, damping = iteration == 1 or moved > SHRINKING * previous, max(damping / 10, UNDAMPED)
         else:
             fresh, damping = True, max(damping * 30, 1e-4)
         if moved < problem.settings.tolerance:

@@ -1,9 +1,9 @@
 """Sum of squared marker distances of a rigid-body tree, its gradient and Gauss-Newton matrix, for many frames at once.
 
 A marker enters only through moments of its segment's cloud (weights w, local points p, measured points y): the sums of
-w, w p, w p p', w y, w y p' and w |y|^2. The Gauss-Newton matrix is then the joint-space inertia matrix of a mechanism
-with masses w at the points p (composite rigid bodies, Featherstone 2008, ch. 6), at a cost that does not depend on the
-number of markers. Twists (v, omega) are taken at the root's origin.
+w, w p, w p p', w y, w y p' and w (|p|^2 + |y|^2). The Gauss-Newton matrix is then the joint-space inertia matrix of a
+mechanism with masses w at the points p (composite rigid bodies, Featherstone 2008, ch. 6), at a cost that does not
+depend on the number of markers. Twists (v, omega) are taken at the root's origin.
 """
 
 from collections.abc import Mapping
@@ -31,7 +31,7 @@ class MarkerMoments:
     mixed: np.ndarray
     """Sum of w y p' [m^2], shape (n, n_segments, 3, 3)."""
     square: np.ndarray
-    """Sum of w |y|^2 over all segments [m^2], shape (n,)."""
+    """Sum of w (|p|^2 + |y|^2) over all segments, what the cost has besides terms of the pose [m^2], shape (n,)."""
 
 
 def marker_moments(
@@ -55,7 +55,7 @@ def marker_moments(
         second=np.zeros((n, n_segments, 3, 3)),
         measured=np.zeros((n, n_segments, 3)),
         mixed=np.zeros((n, n_segments, 3, 3)),
-        square=(w * (y**2).sum(axis=2)).sum(axis=1),
+        square=(w * ((y**2).sum(axis=2) + (p**2).sum(axis=1))).sum(axis=1),
     )
     for s in range(n_segments):
         own = owner == s
@@ -86,15 +86,14 @@ def marker_slope(subject: SubjectModel, moments: MarkerMoments, q: np.ndarray) -
     poses = forward_kinematics(subject, q)
     twists = _joint_twists(subject, poses, q)
     force, cost = _segment_forces(moments, poses)
-    _add_to_parents(subject, force)
+    force = _carried(subject, force)
     gradient = (twists * np.swapaxes(force[:, _owners(subject)], 1, 2)).sum(axis=1)
     return Slope(cost=cost, gradient=gradient, poses=poses, twists=twists)
 
 
 def gauss_newton_matrix(subject: SubjectModel, moments: MarkerMoments, slope: Slope) -> np.ndarray:
     """J'WJ where the slope was taken, shape (n, n_q, n_q)."""
-    inertia = _segment_inertias(moments, slope.poses)
-    _add_to_parents(subject, inertia)
+    inertia = _carried(subject, _segment_inertias(moments, slope.poses))
     twists, owner = slope.twists, _owners(subject)
     n, _, n_q = twists.shape
     columns = np.moveaxis(twists.reshape(n, 6, -1, 3), 2, 1)  # (n, 1 + n_segments, 6, 3)
@@ -104,10 +103,10 @@ def gauss_newton_matrix(subject: SubjectModel, moments: MarkerMoments, slope: Sl
     return np.where(above, product, np.swapaxes(product, 1, 2) * above.T)
 
 
-def _add_to_parents(subject: SubjectModel, values: np.ndarray) -> None:
-    """Sum over each segment and all that it carries, in place, shape (n, n_segments, ...)."""
-    for s in reversed(range(1, len(subject.segments))):
-        values[:, subject.segments[s].parent] += values[:, s]
+def _carried(subject: SubjectModel, values: np.ndarray) -> np.ndarray:
+    """Sum over each segment and all that it carries, shape (n, n_segments, ...)."""
+    below = _moves(subject)[3:].reshape(len(subject.segments), 3, -1)[:, 0].astype(float)
+    return (below @ values.reshape(*values.shape[:2], -1)).reshape(values.shape)
 
 
 def _owners(subject: SubjectModel) -> np.ndarray:
@@ -143,24 +142,18 @@ def _joint_twists(subject: SubjectModel, poses: SegmentPoses, q: np.ndarray) -> 
     return twists
 
 
-def _cost(moments: MarkerMoments, poses: SegmentPoses) -> np.ndarray:
-    x, R = poses.origins, poses.rotations
-    turned = (R @ moments.first[..., None])[..., 0]
-    own = moments.weight * (x * x).sum(-1) + 2 * (x * turned).sum(-1) + np.trace(moments.second, axis1=-2, axis2=-1)
-    cross = (x * moments.measured).sum(-1) + (R * moments.mixed).sum((-2, -1))
-    return moments.square + (own - 2 * cross).sum(axis=1)
-
-
 def _segment_forces(moments: MarkerMoments, poses: SegmentPoses) -> tuple[np.ndarray, np.ndarray]:
     """Generalised force (n, n_segments, 6) of every segment's markers at the root's origin, and the cost (n,)."""
     x, R, w = poses.origins, poses.rotations, moments.weight[..., None]
     root = x[:, :1]
-    h = w * (x - root) + (R @ moments.first[..., None])[..., 0]
-    residual = w * root + h - moments.measured
-    M = moments.mixed @ np.swapaxes(R, -1, -2) + _outer(moments.measured, x - root)
+    turned = (R @ moments.first[..., None])[..., 0]
+    missing = turned - moments.measured
+    residual = w * x + missing
+    pose_terms = (x * (residual + missing)).sum((-2, -1)) - 2 * (R * moments.mixed).sum((-3, -2, -1))
+    h = w * (x - root) + turned
+    M = moments.mixed @ np.swapaxes(R, -1, -2) + _outer(moments.measured, x - root) - _outer(root, h)
     axial = np.stack([M[..., 2, 1] - M[..., 1, 2], M[..., 0, 2] - M[..., 2, 0], M[..., 1, 0] - M[..., 0, 1]], axis=-1)
-    force = np.concatenate([residual, (_skew(h) @ root[..., None])[..., 0] - axial], axis=-1)
-    return force, _cost(moments, poses)
+    return np.concatenate([residual, -axial], axis=-1), moments.square + pose_terms
 
 
 def _segment_inertias(moments: MarkerMoments, poses: SegmentPoses) -> np.ndarray:
