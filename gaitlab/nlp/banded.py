@@ -11,7 +11,10 @@ import numpy as np
 from scipy.linalg import lapack
 
 from ..errors import ProblemError
-from .sparse_problem import Pattern, SparseStructure
+from .sparse_problem import Derivatives, Pattern, SparseStructure, pairs_in_rows
+
+AUGMENTATION = 1e5
+"""Weight of the constraints, relative to the largest second derivative, in the convexity test."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,14 +63,7 @@ class KKTAssembly:
     def _pairs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         # Entries of J_c that share a row: (first, second, row). Rows of c are short.
         rows = self.structure.jac_c.rows
-        by_row = np.argsort(rows, kind="stable")
-        counts = np.bincount(rows, minlength=self.structure.n_c)
-        starts = np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
-        n_pairs = counts**2
-        row = np.repeat(np.arange(len(counts)), n_pairs)
-        within = np.arange(n_pairs.sum()) - np.repeat(np.cumsum(n_pairs) - n_pairs, n_pairs)
-        first = by_row[starts[row] + within // counts[row]] if len(row) else row
-        second = by_row[starts[row] + within % counts[row]] if len(row) else row
+        row, first, second = pairs_in_rows(rows, np.arange(len(rows)))
         return first, second, row
 
     @cached_property
@@ -79,6 +75,41 @@ class KKTAssembly:
         rows = [s.hess.rows, s.jac_c.cols[first], g_rows, s.jac_g.cols, diagonal]
         cols = [s.hess.cols, s.jac_c.cols[second], s.jac_g.cols, g_rows, diagonal]
         return Pattern(self.position[np.concatenate(rows)], self.position[np.concatenate(cols)])
+
+    @cached_property
+    def _primal(self) -> tuple[np.ndarray, np.ndarray, int]:
+        # Lower band of the primal matrix: place in LAPACK's storage, which entries are used, bandwidth.
+        s = self.structure
+        first, second, _ = self._pairs
+        diagonal = np.arange(s.n_w)
+        rank = np.argsort(np.argsort(self.position[: s.n_w]))
+        rows = rank[np.concatenate([s.hess.rows, s.gram.rows, s.jac_c.cols[first], diagonal])]
+        cols = rank[np.concatenate([s.hess.cols, s.gram.cols, s.jac_c.cols[second], diagonal])]
+        lower = np.flatnonzero(rows >= cols)
+        k = int(np.max(rows - cols))
+        return cols[lower] * (k + 1) + rows[lower] - cols[lower], lower, k
+
+    def is_convex(self, derivatives: Derivatives, sigma: np.ndarray, delta: float) -> bool:
+        r"""Whether :math:`H + J_c^T \Sigma J_c + \delta I` is positive definite on the null space of J_g.
+
+        Sufficient: a Cholesky factor of the matrix plus :math:`\rho J_g^T D J_g` exists (Debreu's lemma); with
+        rho as large as rounding allows it is practically necessary too.
+        """
+        first, second, row = self._pairs
+        place, lower, k = self._primal
+        rho = AUGMENTATION * max(1.0, float(np.max(np.abs(derivatives.hess), initial=0.0)))
+        jac_c = derivatives.jac_c
+        entries = np.concatenate(
+            [
+                derivatives.hess,
+                rho * derivatives.gram,
+                jac_c[first] * jac_c[second] * sigma[row],
+                np.full(self.structure.n_w, delta),
+            ]
+        )[lower]
+        band = np.bincount(place, weights=entries, minlength=self.structure.n_w * (k + 1))
+        _, info = lapack.dpbtrf(band.reshape(-1, k + 1).T, lower=True, overwrite_ab=True)
+        return info == 0
 
     @cached_property
     def bandwidth(self) -> int:

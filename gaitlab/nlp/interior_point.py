@@ -1,8 +1,7 @@
 """Primal-dual interior-point method for problems whose KKT system is banded in time.
 
 Line-search filter method of Wächter and Biegler (Math. Program. 106, 2006) with slacks for the inequalities, the
-inertia-free curvature test of Chiang and Zavala (Comput. Optim. Appl. 64, 2016), and one banded LU factorisation per
-iteration. The final barrier parameter is a setting: a small positive one makes the solution a smooth function of
+inertia corrected by a banded Cholesky test, and one banded LU factorisation per iteration. The final barrier parameter is a setting: a small positive one makes the solution a smooth function of
 the problem's parameters, which the sensitivities in `nlp.sensitivity` rely on.
 """
 
@@ -51,8 +50,8 @@ class InteriorPoint:
     mu_linear: float = 0.2
     mu_power: float = 1.5
     fraction_to_boundary: float = 0.99
-    curvature: float = 1e-10
-    """Least curvature of the Lagrangian along an accepted step."""
+    delta_first: float = 1e-4
+    """First multiple of the identity tried where the Lagrangian is not convex."""
 
     def solve(
         self,
@@ -77,9 +76,8 @@ class _Run:
         self.structure = problem.structure
         self.assembly = KKTAssembly(self.structure)
         self.mu = method.mu_initial
-        self.delta = 0.0
+        self.delta, self.last_delta = 0.0, 0.0
         self.filter = Filter()
-        self.failures = 0
 
     def solve(self, start: SparseSolution | np.ndarray) -> SparseSolution:
         """Iterate until converged, stalled or out of iterations."""
@@ -139,36 +137,39 @@ class _Run:
         )
 
     def _iterate(self, x: Iterate, values: Values, derivatives: Derivatives) -> tuple[Iterate, Values] | None:
+        self.delta = 0.0
         for _ in range(12):
             step = self._direction(x, values, derivatives)
             if step is None:
                 return None
             moved = self._search(x, values, derivatives, step)
             if moved is not None:
-                self.failures = 0
-                self.delta = 0.0 if self.delta < 1e-7 else self.delta / 8.0
                 return moved
-            self.failures += 1
-            self.delta = max(1e-4, 10.0 * self.delta)
+            self.delta = max(1e-4, 10.0 * max(self.delta, self.last_delta))
         return self._restore(x, values, derivatives)
 
     def _direction(self, x: Iterate, values: Values, derivatives: Derivatives) -> Step | None:
-        """Newton direction with enough curvature, or None."""
-        delta = self.delta
+        """Newton direction of a problem made convex on the null space of the constraints, or None."""
         sigma = x.lam_c / x.s
-        for delta_g in (0.0, *([1e-8] * 24)):
+        delta = self._convexify(derivatives, sigma)
+        for delta_g in (0.0, 1e-9, 1e-8, 1e-7):
             factors = self.assembly.factorise(
                 (derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma, (delta, delta_g)
             )
             if factors is not None:
                 step = self._solve_newton(x, values, derivatives, factors.solve)
-                if self._curved(step, x, values, derivatives, delta):
-                    self.delta = delta
+                if np.all(np.isfinite(step.w)):
                     return step
-            delta = max(1e-4, 8.0 * delta) if factors is not None or delta_g > 0.0 else delta
-            if delta > 1e12:
-                break
         return None
+
+    def _convexify(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
+        """Smallest multiple of the identity, within a factor, that gives the right inertia."""
+        delta = self.delta
+        while not self.assembly.is_convex(derivatives, sigma, delta) and delta < 1e8:
+            delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
+        if delta > 0.0:
+            self.last_delta = delta
+        return delta
 
     def _solve_newton(
         self, x: Iterate, values: Values, derivatives: Derivatives, solve: Callable[[np.ndarray], np.ndarray]
@@ -183,16 +184,6 @@ class _Run:
         dw, dlam = solution[: st.n_w], solution[st.n_w :]
         ds = products.multiply(st.jac_c, derivatives.jac_c, dw, st.n_c) + residual_c
         return Step(dw, ds, dlam, self.mu / x.s - x.lam_c - x.lam_c / x.s * ds)
-
-    def _curved(self, step: Step, x: Iterate, values: Values, derivatives: Derivatives, delta: float) -> bool:
-        st, products = self.structure, self.assembly
-        if not np.all(np.isfinite(step.w)):
-            return False
-        jac_step = products.multiply(st.jac_c, derivatives.jac_c, step.w, st.n_c)
-        quadratic = step.w @ products.multiply(st.hess, derivatives.hess, step.w, st.n_w)
-        quadratic += x.lam_c / x.s @ jac_step**2 + delta * (step.w @ step.w)
-        slack = max(-float((x.lam_g + step.lam_g) @ values.g), 0.0)
-        return quadratic + slack >= self.method.curvature * (step.w @ step.w)
 
     def _search(
         self, x: Iterate, values: Values, derivatives: Derivatives, step: Step
@@ -230,7 +221,7 @@ class _Run:
             w, s = x.w + alpha * step.w, x.s + alpha * step.s
             new = self.problem.values(w)
             if Merit(new, s, self.mu).violation < (1.0 - 1e-2 * alpha) * before:
-                self.filter, self.delta = Filter(), 0.0
+                self.filter = Filter()
                 return Iterate(w, s, x.lam_g, np.clip(x.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s)), new
             alpha /= 2.0
         return None

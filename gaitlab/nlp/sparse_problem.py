@@ -36,6 +36,8 @@ class Derivatives(NamedTuple):
     """Entries of the Jacobian of c, shape (nnz_c,)."""
     hess: np.ndarray
     """Entries of the Hessian of f + lam_g' g - lam_c' c, both triangles, shape (nnz_h,)."""
+    gram: np.ndarray
+    """Entries of J_g' D J_g for some positive diagonal D that makes its rows of order one, shape (nnz_gram,)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +50,7 @@ class SparseStructure:
     jac_g: Pattern
     jac_c: Pattern
     hess: Pattern
+    gram: Pattern
     order: np.ndarray
     """Order of (w, lam_g) along time: a permutation, shape (n_w + n_g,)."""
 
@@ -72,3 +75,15 @@ class SparseProblem(Protocol):
     def derivatives(self, w: np.ndarray, lam_g: np.ndarray, lam_c: np.ndarray) -> Derivatives:
         """Evaluate the derivatives at w, shape (n_w,), for multipliers of shapes (n_g,) and (n_c,)."""
         ...
+
+
+def pairs_in_rows(rows: np.ndarray, entries: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """All ordered pairs of entries, shape (nnz,), that share a row, shape (nnz,): (row, first, second)."""
+    order = np.argsort(rows, kind="stable")
+    rows, entries = rows[order], entries[order]
+    counts = np.bincount(rows) if len(rows) else np.zeros(0, dtype=np.int64)
+    starts = np.cumsum(counts) - counts
+    n_pairs = counts**2
+    row = np.repeat(np.arange(len(counts)), n_pairs)
+    within = np.arange(n_pairs.sum()) - np.repeat(np.cumsum(n_pairs) - n_pairs, n_pairs)
+    return row, entries[starts[row] + within // counts[row]], entries[starts[row] + within % counts[row]]

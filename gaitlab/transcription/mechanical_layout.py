@@ -9,17 +9,20 @@ from ..errors import ProblemError
 from ..ocp.mechanical import ContactStage
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Boundary:
-    """Which entries of the first and last state x = (q, v) are given."""
+    """Which entries of the states x = (q, v) are given: pairs (node, indices)."""
 
-    initial: tuple[int, ...] = ()
-    final: tuple[int, ...] = ()
+    given: tuple[tuple[int, tuple[int, ...]], ...] = ()
+
+    def indices(self, node: int) -> set[int]:
+        """Given entries of the state at a node."""
+        return {i for n, entries in self.given if n == node for i in entries}
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, order=True)
 class ContactRow:
-    """One scalar contact condition sum_j sign_j y_j(x_node_j) = 0 or >= 0, y = (positions, velocities)."""
+    """One scalar condition y(x_node) - y(x_minus_node) = 0 or y(x_node) >= 0, y a contact position or velocity."""
 
     component: int
     """Index into (positions, velocities)."""
@@ -37,6 +40,8 @@ class MechanicalLayout:
     n_f: int
     n_r: int
     boundary: Boundary
+    redundant: frozenset[ContactRow] = frozenset()
+    """Contact conditions that follow from the others and are left out (see `contact_rank`)."""
 
     def __post_init__(self) -> None:
         if not self.stages:
@@ -74,47 +79,37 @@ class MechanicalLayout:
         x = 2 * self.n_q * np.arange(n)[:, None] + np.arange(width)  # (N, 4 n_q): neighbouring nodes are adjacent
         return np.concatenate([np.repeat(x[:, None], 2, axis=1), self.force_index()], axis=2)
 
+    def _q_given(self, node: int) -> bool:
+        return set(range(self.n_q)) <= self.boundary.indices(node)
+
+    def _v_given(self, node: int) -> bool:
+        return set(range(self.n_q, 2 * self.n_q)) <= self.boundary.indices(node)
+
     def contact_equalities(self) -> list[ContactRow]:
         """Conditions that hold points in contact in place, and those that make landings soft."""
         rows: list[ContactRow] = []
-        node, n = 0, self.n_intervals
-        fixed = set(self.boundary.initial), set(self.boundary.final)
-        q_fixed = set(range(self.n_q)) <= fixed[1]
-        v_fixed = set(range(self.n_q, 2 * self.n_q)) <= fixed[1]
-        for index, stage in enumerate(self.stages):
-            if index > 0 or len(fixed[0]) < 2 * self.n_q:
-                rows += self._start_rows(index, node)
+        node = 0
+        for stage in self.stages:
+            if not self._q_given(node):
+                rows += [ContactRow(component=i, node=node) for i in stage.grounded]
+            if not self._v_given(node):
+                rows += [ContactRow(component=self.n_f + i, node=node) for i in stage.landing]
             for k in range(node, node + stage.n_intervals):
-                last = k + 1 == n
-                # A given last posture already stands on the ground: repeating it would make the rows dependent.
-                held = [i for i in stage.active if not (last and q_fixed and i in self._heights())]
-                rows += [ContactRow(component=i, node=k + 1, minus_node=k) for i in held]
-                if not (last and v_fixed):
+                rows += [ContactRow(component=i, node=k + 1, minus_node=k) for i in stage.active]
+                if not self._v_given(k + 1):
                     rows += [ContactRow(component=self.n_f + i, node=k + 1) for i in stage.active]
             node += stage.n_intervals
-        return rows
-
-    def _heights(self) -> set[int]:
-        return {i for s in self.stages for i in (*s.grounded, *s.clear)}
-
-    def _start_rows(self, index: int, node: int) -> list[ContactRow]:
-        stage = self.stages[index]
-        q_given = index == 0 and set(range(self.n_q)) <= set(self.boundary.initial)
-        grounded = () if q_given else stage.grounded
-        rows = [ContactRow(component=i, node=node) for i in grounded]
-        return rows + [ContactRow(component=self.n_f + i, node=node) for i in stage.landing]
+        return [row for row in rows if row not in self.redundant]
 
     def clearances(self) -> list[ContactRow]:
         """Heights that must not be negative, at the nodes where they are free."""
         rows: list[ContactRow] = []
-        node, last = 0, self.n_intervals
+        node = 0
         for index, stage in enumerate(self.stages):
             end = node + stage.n_intervals
             lands = set(self.stages[index + 1].grounded) if index + 1 < len(self.stages) else set[int]()
             for k in range(node + 1, end + 1):
-                if k == last and self.boundary.final:
-                    continue
-                free = [i for i in stage.clear if not (k == end and i in lands)]
+                free = [i for i in stage.clear if not (k == end and i in lands) and not self._q_given(k)]
                 rows += [ContactRow(component=i, node=k) for i in free]
             node = end
         return rows

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from ..nlp.codegen import Batch
-from ..nlp.sparse_problem import Derivatives, Pattern, SparseStructure, Values
+from ..nlp.sparse_problem import Derivatives, Pattern, SparseStructure, Values, pairs_in_rows
 from .hermite import GAUSS_POINTS, hermite_coefficients
 from .mechanical_layout import ContactRow, MechanicalLayout, time_order
 
@@ -25,10 +25,8 @@ class MechanicalData:
     """States to track, shape (N + 1, 2 n_q)."""
     tracking: np.ndarray
     """Weights of the squared tracking errors, shape (N + 1, 2 n_q); zero: no tracking."""
-    initial: np.ndarray
-    """Given first state; only the entries that the boundary names count, shape (2 n_q,)."""
-    final: np.ndarray
-    """Given last state, shape (2 n_q,)."""
+    given: np.ndarray
+    """Given states; only the entries that the boundary names count, shape (N + 1, 2 n_q)."""
     force_weight: float = 0.0
     """Weight of the squared scaled forces, which makes redundant contact forces unique."""
     allowance: float = 0.0
@@ -78,6 +76,7 @@ class MechanicalStructure:
                 np.concatenate([self.cone[0], self.n_cone + clear_rows]), np.concatenate([self.cone[1], clear_cols])
             ),
             hess=self._hessian_pattern(),
+            gram=self._gram_pattern(),
             order=self._order(),
         )
 
@@ -88,10 +87,10 @@ class MechanicalStructure:
 
     @cached_property
     def fixed_columns(self) -> np.ndarray:
-        """Indices in w of the given entries of the first and last state, shape (n_fixed,)."""
-        boundary, width = self.layout.boundary, 2 * self.layout.n_q
-        last = width * self.layout.n_intervals
-        return np.array([*boundary.initial, *(last + i for i in boundary.final)], dtype=np.int64)
+        """Indices in w of the given entries of states, shape (n_fixed,)."""
+        width = 2 * self.layout.n_q
+        given = self.layout.boundary.given
+        return np.array([width * node + i for node, entries in given for i in entries], dtype=np.int64)
 
     def contact_pattern(self, rows: list[ContactRow]) -> tuple[np.ndarray, np.ndarray]:
         """Row and column of the entries of contact rows: 2 n_q per node that takes part, each of shape (nnz,)."""
@@ -123,6 +122,35 @@ class MechanicalStructure:
         used = self.point_index >= 0
         return used[:, :, None] & used[:, None, :]
 
+    @cached_property
+    def contact_entry_rows(self) -> np.ndarray:
+        """Row of each entry of the contact Jacobian, shape (nnz,)."""
+        return self.contact_pattern(self.contact)[0]
+
+    @cached_property
+    def contact_pairs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pairs of structural nonzeros in the same contact row: (row, first entry, second entry)."""
+        n_q, width = self.layout.n_q, 2 * self.layout.n_q
+        term_row, _, component, _ = self.contact_terms
+        rows: list[np.ndarray] = []
+        entries: list[np.ndarray] = []
+        for term, (r, c) in enumerate(zip(term_row, component, strict=True)):
+            # Positions do not depend on velocities.
+            own = term * width + np.arange(n_q if c < self.layout.n_f else width)
+            rows.append(np.full(len(own), r))
+            entries.append(own)
+        return pairs_in_rows(np.concatenate(rows), np.concatenate(entries))
+
+    def _gram_pattern(self) -> Pattern:
+        local = self._hessian_pattern()
+        n_local = int(self.hessian_kept.sum())
+        _, first, second = self.contact_pairs
+        cols = self.contact_pattern(self.contact)[1]
+        return Pattern(
+            np.concatenate([local.rows[:n_local], cols[first], self.fixed_columns]),
+            np.concatenate([local.cols[:n_local], cols[second], self.fixed_columns]),
+        )
+
     def _hessian_pattern(self) -> Pattern:
         z, width = self.point_index, 2 * self.layout.n_q
         shape = self.hessian_kept.shape
@@ -141,7 +169,7 @@ class MechanicalStructure:
         forces = np.repeat(np.arange(2 * n) // 2 + 0.5, (self.force_index >= 0).sum(axis=1))
         residuals = np.repeat(np.arange(2 * n) // 2 + 0.5, layout.n_r)
         contacts = [(r.node - 0.5 if r.minus_node >= 0 else r.node - 0.4) for r in self.contact]
-        fixed = np.where(self.fixed_columns < 2 * layout.n_q, -0.5, n + 0.5)
+        fixed = self.fixed_columns // (2 * layout.n_q) + 0.1
         return time_order(np.concatenate([states, forces]), np.concatenate([residuals, contacts, fixed]))
 
 
@@ -216,9 +244,8 @@ class MechanicalProblem:
         return np.bincount(row, weights=sign * contact[node, component], minlength=n)
 
     def _fixed(self, w: np.ndarray) -> np.ndarray:
-        boundary, d = self.shared.layout.boundary, self.data
-        given = np.concatenate([d.initial[list(boundary.initial)], d.final[list(boundary.final)]])
-        return w[self.shared.fixed_columns] - given
+        columns = self.shared.fixed_columns
+        return w[columns] - self.data.given.ravel()[columns]
 
     def derivatives(self, w: np.ndarray, lam_g: np.ndarray, lam_c: np.ndarray) -> Derivatives:
         """First and second derivatives."""
@@ -236,7 +263,20 @@ class MechanicalProblem:
             jac_g=np.concatenate(jac_g),
             jac_c=np.concatenate([s.cone[2], self._contact_entries(s.clear_terms, contact_jac)]),
             hess=np.concatenate([hess_local[s.hessian_kept], contact_hess.ravel(), self._diagonal()]),
+            gram=self._gram(jac_r, contact_jac),
         )
+
+    def _gram(self, jac_r: np.ndarray, contact_jac: np.ndarray) -> np.ndarray:
+        """Entries of J' D J with unit rows: residuals point by point, contact rows pair by pair, given states."""
+        s = self.shared
+        used = np.where((s.point_index >= 0)[:, None, :], jac_r, 0.0)
+        unit = used / np.maximum(np.linalg.norm(used, axis=2, keepdims=True), 1e-12)
+        local = np.swapaxes(unit, 1, 2) @ unit
+        entries = self._contact_entries(s.contact_terms, contact_jac)
+        row, first, second = s.contact_pairs
+        norms = np.bincount(s.contact_entry_rows, weights=entries**2, minlength=len(s.contact))
+        pairs = entries[first] * entries[second] / np.maximum(norms[row], 1e-24)
+        return np.concatenate([local[s.hessian_kept], pairs, np.ones(len(s.fixed_columns))])
 
     def _point_derivatives(self, z: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Transposed residual Jacobian, cost gradient and Hessian of the Lagrangian in (q, v, a, f) at each point.

@@ -41,17 +41,22 @@ def walking_model(layout: ModelLayout) -> MechanicalModel:
     """
     n_q = layout.n_q
     q, v, a = (ca.SX.sym(name, n_q) for name in "qva")
+    n_joint = n_q - ROOT
     f, p, d = ca.SX.sym("f", 12), ca.SX.sym("p", layout.n_p), ca.SX.sym("d", 2)
+    passive = ca.SX.sym("passive", 3 * n_joint)
     weight = body_weight(layout, p)
     forces = {name: weight * f[3 * i : 3 * i + 3] for i, name in enumerate(POINTS)}
     generalised = inverse_dynamics(layout, p, q, v, a, forces)
     positions, velocities = contact_positions(layout, p, q), contact_velocities(layout, p, q, v)
+    stiffness, damping, neutral = (passive[i * n_joint : (i + 1) * n_joint] for i in range(3))
+    # Ligaments and capsules carry - k (q - q_0) - c v; muscles the rest of what inverse dynamics asks for.
+    active = generalised[ROOT:] + stiffness * (q[ROOT:] - neutral) + damping * v[ROOT:]
     offsets = _lateral_offsets(segment_origins(layout, p, q), positions)
     y = ca.SX.sym("y", n_q + 2)
     state = WalkState(tau=y[ROOT:n_q], v=v[ROOT:], mass=weight / GRAVITY, lateral_offsets=y[n_q:], stance=d)
     return MechanicalModel(
-        q=q, v=v, a=a, f=f, p=p, d=d,
-        outputs=ca.vertcat(generalised[:ROOT] / weight, generalised[ROOT:], offsets),
+        q=q, v=v, a=a, f=f, p=ca.vertcat(p, passive), d=d,
+        outputs=ca.vertcat(generalised[:ROOT] / weight, active, offsets),
         n_residual=ROOT,
         y=y,
         criteria=ca.vertcat(*[c.expression(state) for c in ALL.values()]),
