@@ -148,11 +148,16 @@ def _walk(directory: Path) -> tuple[Walk | None, str]:
     try:
         return read_walk(directory), ""
     except OutputError as error:
-        return None, str(error)
+        return None, _without_path(error, directory)
+
+
+def _without_path(error: OutputError, directory: Path) -> str:
+    # A path may hold a name that must not travel with the page.
+    return str(error).replace(f"{directory / 'x'}"[:-1], "").replace(str(directory), "the directory")
 
 
 def _angles(directory: Path) -> tuple[Angles | None, str]:
     try:
         return read_angles(directory), ""
     except OutputError as error:
-        return None, str(error)
+        return None, _without_path(error, directory)

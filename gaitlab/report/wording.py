@@ -100,14 +100,14 @@ def _angle(rms: float) -> str:
 
 
 def weights_in_words(weights: Weights) -> list[str]:
-    """Sentences on shares, order, identifiability and fit; the caveat stands apart."""
-    sentences = list[str]()
+    """Sentences on shares, order, identifiability and fit, or on why there are none; the caveat stands apart."""
     if not weights.converged:
-        state = weights.status or "not stated"
-        sentences.append(
+        state = spoken(weights.status or "not stated")
+        return [
             f"The computation did not reach its certificate (status: {state}). The numbers below are the last iterate; "
-            "they are not a result."
-        )
+            "they are not a result, and nothing is concluded from them."
+        ]
+    sentences = list[str]()
     ranked = [criterion for _, criterion in _ranked(weights)]
     if ranked:
         sentences.append(f"Shares of the model's cost: {', '.join(_share(criterion) for criterion in ranked)}.")

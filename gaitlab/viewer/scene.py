@@ -28,6 +28,7 @@ class Scene:
         self._server, self._motion = server, motion
         self._root = server.scene.add_frame(ROOT, show_axes=False)
         self._nodes = dict[str, Any]()
+        self._offset, self._floor = np.zeros(3), np.zeros(3)
         self._visible: dict[str, bool] = dict.fromkeys(LAYERS, True)
         self._filled: dict[str, bool] = dict.fromkeys(LAYERS, True)
         self._add_floor()
@@ -48,15 +49,19 @@ class Scene:
         self._refresh(layer)
 
     def show(self, frame: int, follow: bool) -> None:
-        """Move everything to a frame; with `follow`, keep the pelvis over the middle of the floor."""
+        """Move everything to a frame; with `follow`, keep the pelvis in its place and move the floor.
+
+        The shift is added to the points, not to a parent node: a browser may apply the two at different times.
+        """
         motion = self._motion
+        self._offset = self.shift(frame) if follow else np.zeros(3)
+        self._nodes[FLOOR].position = self._floor + self._offset
         self._move_points(MARKERS, motion.markers, frame)
         self._move_bones(MEASURED, motion.measured, frame)
         self._move_bones(OPTIMAL, motion.optimal, frame)
         self._move_arrows(PLATES, motion.plates, frame)
         self._move_arrows(CONTACTS, motion.contacts, frame)
         self._move_pressure(frame)
-        self._root.position = self.shift(frame) if follow else np.zeros(3)
 
     def shift(self, frame: int) -> np.ndarray:
         """Way on the floor that brings the pelvis to the middle of its path [m], shape (3,)."""
@@ -75,6 +80,7 @@ class Scene:
         middle = ways.mean(axis=0) if len(ways) else np.zeros(3)
         extent = float(np.ptp(ways[:, :2], axis=0).max()) if len(ways) else 0.0
         size = float(np.ceil(extent + 3.0))
+        self._floor = np.round(middle) * (1.0, 1.0, 0.0)
         self._nodes[FLOOR] = self._server.scene.add_grid(
             f"{ROOT}/{FLOOR}",
             width=size,
@@ -82,7 +88,7 @@ class Scene:
             cell_size=0.25,
             cell_color=(226, 230, 234),
             section_color=(180, 188, 196),
-            position=(float(np.round(middle[0])), float(np.round(middle[1])), 0.0),
+            position=self._floor,
         )
 
     def _add_points(self, layer: str, points: np.ndarray | None, size: float) -> None:
@@ -129,14 +135,14 @@ class Scene:
         )
 
     def _bones_at(self, joints: np.ndarray, frame: int) -> Placement:
-        return place_bones(joints[frame], self._motion.bones, _BONE_RADIUS)
+        return place_bones(joints[frame] + self._offset, self._motion.bones, _BONE_RADIUS)
 
     def _move_points(self, layer: str, points: np.ndarray | None, frame: int) -> None:
         if points is None or layer not in self._nodes:
             return
         known = known_points(points[frame])
         if len(known):
-            self._nodes[layer].points = known.astype(np.float32)
+            self._nodes[layer].points = (known + self._offset).astype(np.float32)
         self._fill(layer, len(known) > 0)
 
     def _move_bones(self, layer: str, joints: np.ndarray | None, frame: int) -> None:
@@ -154,7 +160,7 @@ class Scene:
         scale = self._motion.metres_per_newton
         arrows = force_arrows(forces.origins[frame], forces.vectors[frame], scale)
         if len(arrows):
-            self._nodes[layer].points = arrows.astype(np.float32)
+            self._nodes[layer].points = (arrows + self._offset).astype(np.float32)
         self._fill(layer, len(arrows) > 0)
 
     def _move_pressure(self, frame: int) -> None:

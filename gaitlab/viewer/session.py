@@ -1,6 +1,7 @@
 """A viewing session: one viser server on one output directory, with its controls."""
 
 import io
+import logging
 import socket
 import threading
 import time
@@ -47,6 +48,8 @@ class Session:
     def __init__(self, directory: Path, port: int = 8080, host: str = "127.0.0.1") -> None:
         self._motions = find_motions(directory)
         _check_free(host, port)
+        # A browser that drops a spare connection would print a traceback.
+        logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
         with _quiet():
             self._server = viser.ViserServer(host=host, port=port, label="gaitlab", verbose=False)
         self._lock = threading.RLock()
@@ -127,8 +130,10 @@ class Session:
     def select(self, trial: str) -> None:
         """Show another trial, from its start."""
         with self._lock:
+            speed = self._playback.speed
             self._scene.remove()
             self._set_motion(self._motions[trial])
+            self._playback = replace(self._playback, speed=speed)
             for layer in self._hidden:
                 self._scene.set_visible(layer, False)
             self._slider.remove()

@@ -109,6 +109,12 @@ def test_a_broken_walk_is_said_on_the_page(one_walk):
     assert "not a readable archive" in Page(render(one_walk)).text
 
 
+def test_the_page_does_not_give_away_where_it_was_made(tmp_path):
+    directory = write_output(tmp_path / "surname", document(), angles=False)
+    (directory / "angles.csv").write_text("time\nx\n")
+    assert "surname" not in render(directory)
+
+
 def test_frames_outside_the_stride_are_left_out(tmp_path):
     arrays = walk_arrays()
     arrays["q_optimal"][:100] = np.nan

@@ -55,7 +55,7 @@ def test_a_worse_fit_than_another_is_not_hidden():
     assert "These weights are no better than: equal weights." in said
 
 
-def test_no_certificate_comes_first():
-    assert words(criterion("a", 1.0, 0.1), status="cancelled").startswith(
-        "The computation did not reach its certificate (status: cancelled)."
-    )
+def test_nothing_is_concluded_without_a_certificate():
+    said = words(criterion("a", 1.0, 0.1), status="not_converged")
+    assert said.startswith("The computation did not reach its certificate (status: not converged).")
+    assert "100 %" not in said
