@@ -65,10 +65,8 @@ def whole_model_kinematics() -> Iterator[Row]:
         kinematics = joint_kinematics(walk, calibration)
         subject = person_model(static, joint_kinematics(static, calibration), calibration.parameters, SubjectSettings())
         motion = whole_model_motion(subject, walk, kinematics)
-        whole = np.all([np.isfinite(angle) for angle in kinematics.angles.values()], axis=0)
-        distances = np.concatenate([distance[whole] for distance in motion.residuals.values()])
-        residual = 1e3 * float(np.sqrt(np.nanmean(distances**2)))
-        yield Row(quantity="marker residual, valid frames", value=residual, limit="<= 15", unit="mm", subject=child)
+        residual = 1e3 * motion.marker_rms
+        yield Row(quantity="marker residual", value=residual, limit="<= 15", unit="mm", subject=child)
         milliseconds = _per_frame(partial(whole_model_motion, subject, walk, kinematics), walk.n_frames)
         yield Row(quantity="whole model per frame", value=milliseconds, limit="<= 0.3", unit="ms", subject=child)
         milliseconds = _per_frame(partial(joint_kinematics, walk, calibration), walk.n_frames)

@@ -19,7 +19,7 @@ from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap, describe_gaps, fill_gaps
 from .calibration import assumed_parameters, calibrate_walk
 from .documents import Session, document_of
-from .model import person_model, whole_model_motion
+from .model import motion_warnings, person_model, whole_model_motion
 from .options import AnalysisOptions
 from .pooling import combine_entries
 from .progress import Progress, Step, silent
@@ -143,6 +143,7 @@ def _analyse_walk(subject: SubjectModel, walk: _Walk, options: AnalysisOptions, 
         arrays=arrays | (dict(weights.arrays) if weights is not None else {}),
         warnings=_trial_warnings(walk)
         + stride_warnings
+        + motion_warnings(motion)
         + (weights.warnings if weights is not None else ())
         + ((reason,) if reason else ()),
         not_converged=reason,

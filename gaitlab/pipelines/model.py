@@ -46,6 +46,19 @@ def whole_model_motion(
     )
 
 
+def motion_warnings(motion: InverseKinematics) -> tuple[str, ...]:
+    """What a reader should know about the fit of the whole model, one sentence each."""
+    warnings: list[str] = []
+    if motion.left_out:
+        markers = ", ".join(f"{name} in {frames} frames" for name, frames in sorted(motion.left_out.items()))
+        warnings.append(f"markers that cannot be on their segment are left out of the whole-model kinematics: {markers}")
+    if motion.at_limits:
+        warnings.append(f"coordinates of the model beyond their usual range: {', '.join(motion.at_limits)}")
+    if not motion.converged:
+        warnings.append("the whole-model kinematics stopped before it converged; look at its marker residual")
+    return tuple(warnings)
+
+
 def _measured_body(recording: Recording, kinematics: ConventionalKinematics, heading: float) -> MeasuredBody:
     """What was measured, turned from the laboratory to the gait frame of a heading [rad]."""
     to_gait = rotation_gait_to_lab(heading).T
