@@ -99,7 +99,7 @@ def visible_strides(
         hidden = [n for n in names if n not in filled or not np.isfinite(filled[n][frames]).all()]
         if hidden:
             warnings.append(
-                f"{recording.name}: the {stride.side} stride at {stride.start:.2f}-{stride.end:.2f} s is not used: "
+                f"{recording.name}: the {stride.side} stride at {stride.start:.2f}-{stride.end:.2f} s is incomplete: "
                 f"{', '.join(hidden)} missing"
             )
         else:

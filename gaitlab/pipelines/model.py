@@ -51,7 +51,7 @@ def motion_warnings(motion: InverseKinematics) -> tuple[str, ...]:
     warnings: list[str] = []
     if motion.left_out:
         markers = ", ".join(f"{name} in {frames} frames" for name, frames in sorted(motion.left_out.items()))
-        warnings.append(f"markers that cannot be on their segment are left out of the whole-model kinematics: {markers}")
+        warnings.append(f"left out of the whole-model kinematics, as they cannot be on their segment: {markers}")
     if motion.at_limits:
         warnings.append(f"coordinates of the model beyond their usual range: {', '.join(motion.at_limits)}")
     if not motion.converged:

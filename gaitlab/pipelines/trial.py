@@ -50,13 +50,14 @@ class TrialAnalysis:
 
 
 def full_cycles(recording: Recording, events: tuple[Event, ...]) -> tuple[Cycles, tuple[str, ...]]:
-    """Full strides of both sides with all markers, and a warning for each other stride and each side without one.
+    """Full strides of both sides, and a warning for each with missing markers and each side without one.
 
     Raises:
-        InvalidRecording: There is no such stride at all.
+        InvalidRecording: There is no full stride, or none has all markers.
     """
-    usable, warnings = visible_strides(recording, full_strides(recording.name, events))
-    found: Cycles = {side: tuple(stride for stride in usable if stride.side == side) for side in SIDES}
+    strides = full_strides(recording.name, events)
+    _, warnings = visible_strides(recording, strides)
+    found: Cycles = {side: tuple(stride for stride in strides if stride.side == side) for side in SIDES}
     empty = tuple(f"no full stride of the {side} side" for side in SIDES if not found[side])
     return found, (*warnings, *empty)
 

@@ -58,7 +58,7 @@ def test_strides_with_hidden_markers_are_left_out():
     usable, warnings = visible_strides(replace(walk, markers={**walk.markers, "RHEE": hidden}), strides)
     assert usable == strides[2:]
     assert len(warnings) == 2
-    assert "the left stride at 0.15-1.25 s is not used: RHEE missing" in warnings[0]
+    assert "the left stride at 0.15-1.25 s is incomplete: RHEE missing" in warnings[0]
 
 
 def test_markers_missing_for_a_whole_stance_of_the_only_stride():
