@@ -5,6 +5,7 @@ CGM2 for medial markers (LKNM knee, LMED ankle) and of the Oxford foot model (LC
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -92,7 +93,7 @@ def sort_labels(labels: Sequence[str], groups: Mapping[str, Iterable[str]]) -> L
 
     Unlabelled trajectories ('*52', '') are dropped. Of several subjects the first is used, with a warning.
     """
-    split = [strip_prefix(label) for label in labels]
+    split = _without_common_suffix([strip_prefix(label) for label in labels])
     subject, warnings = _choose_subject(split)
     listed = {strip_prefix(label)[1]: group for group, members in groups.items() for label in members}
     markers: dict[str, int] = {}
@@ -112,6 +113,21 @@ def sort_labels(labels: Sequence[str], groups: Mapping[str, Iterable[str]]) -> L
                 markers[marker] = column  # an exact label wins over an alias
             exact.update({name} & {marker})
     return Labelled(markers=markers, positions=positions, outputs=outputs, warnings=warnings)
+
+
+def _without_common_suffix(split: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Names without the suffix that most known markers carry: LKNE_M is no medial marker where LASI is LASI_M."""
+    bare = sum(name.upper() in CANONICAL for _, name in split)
+    suffixes = [_SUFFIX.search(name) for _, name in split]
+    known = Counter(s[0] for (_, name), s in zip(split, suffixes, strict=True) if s and _stem(name, s[0]) in CANONICAL)
+    suffix, count = known.most_common(1)[0] if known else ("", 0)
+    if count <= bare:
+        return list(split)
+    return [(prefix, name.removesuffix(suffix)) for prefix, name in split]
+
+
+def _stem(name: str, suffix: str) -> str:
+    return name.removesuffix(suffix).upper()
 
 
 def _choose_subject(split: Sequence[tuple[str, str]]) -> tuple[str, tuple[str, ...]]:

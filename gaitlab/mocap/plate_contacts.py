@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from gaitlab.mocap.feet import FootMotion
 from gaitlab.mocap.recording import EventKind, ForcePlate, Recording, Side
 from gaitlab.signal.runs import runs
 
 THRESHOLD = 20.0  # N, vertical; the usual choice for walking (Tirosh and Sparrow 2003 compare 5 to 25 N)
-STEP = 100.0  # N; a contact reaches more, or it is noise or a brush
+STEP = 100.0  # N; a contact reaches more, or it is noise or a brush; its edges are where it crosses THRESHOLD
 MERGE = 0.02  # s; shorter interruptions do not end a contact
 HEIGHT = 0.15  # m; a landing foot's marker is no higher above the plate
 
@@ -57,13 +59,18 @@ def _feet(
 def contacts(plate: ForcePlate) -> list[tuple[int, int]]:
     """Runs of samples in which the plate carries a foot, as (start, end) with end exclusive."""
     vertical = plate.force[:, 2]
+    above = vertical > THRESHOLD
     merged: list[tuple[int, int]] = []
-    for start, end in runs(vertical > THRESHOLD):
+    for start, end in runs(vertical > STEP):
         if merged and start - merged[-1][1] < MERGE * plate.rate:
             merged[-1] = (merged[-1][0], end)
         else:
             merged.append((start, end))
-    return [(start, end) for start, end in merged if vertical[start:end].max() > STEP]
+    outside = np.flatnonzero(~np.concatenate([[False], above, [False]])) - 1  # with a sample before and one after
+    return [
+        (int(outside[np.searchsorted(outside, start) - 1]) + 1, int(outside[np.searchsorted(outside, end)]))
+        for start, end in merged
+    ]
 
 
 def _above(plate: ForcePlate, motion: FootMotion, frame: int, kind: EventKind) -> bool:

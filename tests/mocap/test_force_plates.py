@@ -7,7 +7,6 @@ import pytest
 from raw_file import raw_recording
 from synthetic_walk import rectangle
 
-from gaitlab.mocap.c3d import read_c3d
 from gaitlab.mocap.force_plates import at_video_frames, centre_of_pressure, force_plates, plate_channels
 
 Z_UP = np.eye(3)
@@ -145,10 +144,9 @@ def test_no_pressure_centre_without_load():
 
 
 @pytest.mark.shared_data
-def test_ankle_moments_of_the_real_walks(shared_data):
+def test_ankle_moments_of_the_real_walks(real_recordings):
     """|(p - ankle) x F + M| is the file's ankle moment but for the foot's weight and inertia (about 1 N*m)."""
-    for path in sorted(shared_data.glob("children/*/straight_*.c3d")):
-        walk = read_c3d(path)
+    for walk in (read for name, read in real_recordings.items() if name.startswith("straight")):
         weight = 9.81 * walk.parameters["mass"]
         for plate in (at_video_frames(p, walk.rate, walk.n_frames) for p in walk.force_plates):
             centre = plate.corners.mean(axis=0)

@@ -47,6 +47,12 @@ def test_prefixes_of_one_subject_go():
     }
 
 
+def test_a_suffix_on_all_markers_goes():
+    """LKNE_M alone would be the medial marker."""
+    assert set(sort_labels(["LASI_M", "RASI_M", "LKNE_M"], {}).markers) == {"LASI", "RASI", "LKNE"}
+    assert set(sort_labels(["LASI", "LKNE", "LKNE_M"], {}).markers) == {"LASI", "LKNE", "LKNM"}
+
+
 def test_of_two_subjects_the_first_is_used_and_no_name_is_shown():
     found = sort_labels(["Anna:LASI", "Ben:LASI", "Ben:RASI"], {})
     assert found.markers == {"LASI": 0}
