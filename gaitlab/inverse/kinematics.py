@@ -114,7 +114,7 @@ def _result(
 ) -> InverseKinematics:
     lower, upper = settings.limits(subject)
     known = valid_rows(fit.q)
-    outside = ((fit.q < lower - SLACK) | (fit.q > upper + SLACK)).any(axis=0)
+    outside = np.logical_or.reduce((fit.q < lower - SLACK) | (fit.q > upper + SLACK), axis=0)
     squares = np.concatenate(list(_residuals(subject, used, fit.q).values())) ** 2
     return InverseKinematics(
         q=fit.q,

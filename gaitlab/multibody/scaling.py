@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gaitlab.errors import InvalidSubject
-from gaitlab.multibody.anthropometry import TABLES, AnthropometryName
+from gaitlab.multibody.anthropometry import TABLES, AnthropometryName, total_mass_fraction
 from gaitlab.multibody.contact import flat_frames, floor_height, sole_points
 from gaitlab.multibody.marker_set import SEGMENT_OF_MARKER
 from gaitlab.multibody.rigid_body import RigidBody, welded
@@ -40,6 +40,9 @@ class SubjectSettings:
     """Table of masses, centres of mass and radii of gyration."""
     trunk_joint: bool = False
     """False: head, arms and trunk rigid on the pelvis, 24 coordinates as in the thesis. True: 27 with a trunk joint."""
+    trunk_direction: np.ndarray | None = None
+    """Direction of a rigid trunk in the pelvis's axes, shape (3,); None: that of the trial the model is built from.
+    People stand with another pelvic tilt than they walk with: give `trunk_direction` of the walk."""
     floor_height: float | None = None
     """Height of the floor [m] in the frame of the measurement; None: see `contact.floor_height`."""
 
@@ -94,7 +97,7 @@ def build_subject(
         mass: body mass [kg].
         height: body height [m].
         name: of the model.
-        settings: preset of the trunk, table of inertias, height of the floor.
+        settings: preset of the trunk, table of inertias (its masses scaled to add up), height of the floor.
 
     Raises:
         InvalidSubject: mass or height are impossible, or no frame shows a joint.
@@ -103,9 +106,11 @@ def build_subject(
     _check(mass, height)
     poses = segment_poses(body)
     fractions = TABLES[settings.anthropometry]
+    mass = mass / total_mass_fraction(fractions)
     shape = shape_from_height(fractions, height)
     pelvis, trunk = pelvis_body(fractions, shape, mass), trunk_body(fractions, shape, mass)
-    upright = _upright_in_pelvis(poses["pelvis"])
+    given = None if settings.trunk_joint else settings.trunk_direction
+    upright = _axes_along((trunk_direction(body) if given is None else given)[None], np.array([[0.0, 1.0, 0.0]]))[0]
     trunk_joint = upright @ np.array([0.0, 0.0, shape.lengths["pelvis"]])
     pelvis, trunk = pelvis.seen_from(upright, np.zeros(3)), trunk.seen_from(upright, np.zeros(3))
     if not settings.trunk_joint:
@@ -135,10 +140,19 @@ def _check(mass: float, height: float) -> None:
         raise InvalidSubject(f"Body height {height:g} m is impossible; give one between 0.4 and 2.6 m with --height.")
 
 
-def _upright_in_pelvis(pelvis: SegmentPose) -> np.ndarray:
-    """Axes of an upright trunk that faces as the pelvis does, in the pelvis's mean frame, shape (3, 3)."""
-    up = _typical(np.swapaxes(pelvis.rotation, 1, 2) @ UP, "the pelvis")
-    return _axes_along(up[None], np.array([[0.0, 1.0, 0.0]]))[0]
+def trunk_direction(body: MeasuredBody) -> np.ndarray:
+    """Typical direction of the trunk in the pelvis's axes, shape (3,).
+
+    From between the hips to between C7 and CLAV where these markers are, else the vertical.
+    """
+    pelvis = segment_poses(body)["pelvis"]
+    ends = [body.markers[name] for name in ("C7", "CLAV") if name in body.markers]
+    along = (ends[0] + ends[1]) / 2 - pelvis.origin if len(ends) == 2 else np.broadcast_to(UP, pelvis.origin.shape)
+    local = (np.swapaxes(pelvis.rotation, 1, 2) @ along[..., None])[..., 0]
+    if not np.isfinite(local).all(axis=1).any():
+        local = np.swapaxes(pelvis.rotation, 1, 2) @ UP
+    direction = _typical(local, "the pelvis")
+    return direction / np.linalg.norm(direction)
 
 
 def _typical(values: np.ndarray, what: str) -> np.ndarray:
