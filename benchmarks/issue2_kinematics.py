@@ -10,7 +10,7 @@ from event_matching import match_events
 from registry import CHILDREN, Row, measurement
 from vicon import recording, worst_centre, worst_curve
 
-from gaitlab.inverse.conventional import joint_kinematics
+from gaitlab.inverse.conventional import KinematicsSettings, joint_kinematics
 from gaitlab.inverse.static import CalibrationSettings, calibrate_subject
 from gaitlab.mocap.events import detect_events
 from gaitlab.mocap.recording import Recording
@@ -50,7 +50,9 @@ def direct_model_of_adults() -> Iterator[Row]:
 
 def _direct(static: Recording | None, walk: Recording, offsets: str, limit: float, subject: str) -> Iterator[Row]:
     calibration = calibrate_subject(static, walk, {}, CalibrationSettings(offsets=offsets))
-    kinematics = joint_kinematics(walk, calibration)
+    kinematics = joint_kinematics(
+        walk, calibration, KinematicsSettings(foot="sole" if walk is static else "calibrated")
+    )
     words = f"offsets of the {offsets}"
     centre, curve = worst_centre(walk, kinematics), worst_curve(walk, kinematics)
     yield Row(quantity=f"worst joint centre, {words}", value=centre, limit="<= 0.1", unit="mm", subject=subject)

@@ -6,6 +6,7 @@ Sources: Davis et al. 1991, Hum Mov Sci 10:575; Kadaba et al. 1990, J Orthop Res
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -36,6 +37,9 @@ class KinematicsSettings:
     forward: Forward = "laboratory axis"
     """What pelvis rotation and foot progression are measured against: the laboratory axis next to the direction of
     travel, as Plug-in Gait does, or the direction of travel itself."""
+    foot: Literal["calibrated", "sole"] = "calibrated"
+    """Calibrated: the line from toe to ankle turned by the static offsets, for walks. Sole: the line from toe to heel
+    marker itself, as Plug-in Gait does in the static that it measures the offsets in."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +110,12 @@ def joint_kinematics(
         calibrated = calibration.sides[side]
         hip = asis + pelvis @ calibrated.hip_centre
         leg = leg_pose(markers, side, calibrated, hip)
-        foot = foot_axes(markers, side, calibrated, leg)
+        if settings.foot == "sole":
+            require_markers(recording.name, markers, [f"{side[0].upper()}HEE"])
+            delta = recording.parameters.get(f"{side}_sole_delta", 0.0)
+            foot = sole_axes(markers, side, calibrated, leg, delta)
+        else:
+            foot = foot_axes(markers, side, calibrated, leg)
         centres |= {f"{side}_hip": hip, f"{side}_knee": leg.knee, f"{side}_ankle": leg.ankle}
         segments |= {
             f"{side}_thigh": SegmentFrames(origin=hip, rotation=leg.thigh),
@@ -195,3 +204,19 @@ def foot_axes(markers: Mapping[str, np.ndarray], side: Side, calibration: SideCa
     line = leg.ankle - markers[f"{side[0].upper()}TOE"]  # (n, 3)
     offset = rotation_y(-calibration.static_plantar_flexion) @ rotation_x(-SIGN[side] * calibration.static_rotation)
     return frame_from_z(line, leg.shank[:, :, 1]) @ (offset @ rotation_y(np.pi / 2))
+
+
+def sole_axes(
+    markers: Mapping[str, np.ndarray], side: Side, calibration: SideCalibration, leg: LegPose, delta: float
+) -> np.ndarray:
+    """Axes toes, left, up of a foot in the static, laboratory frame, shape (n, 3, 3).
+
+    The line from TOE to HEE, levelled to the height `delta` [m] of the heel above the toes where the sole lies flat, with
+    y of the shank as it was known when the offsets were measured: untorsioned with wands, else torsioned.
+    """
+    letter = side[0].upper()
+    line = markers[f"{letter}HEE"] - markers[f"{letter}TOE"]  # (n, 3)
+    if calibration.foot_flat is not False:
+        line = line * np.array([1.0, 1.0, 0.0]) + np.array([0.0, 0.0, delta])
+    shank = leg.shank if calibration.method == "wands" else leg.shank_torsioned
+    return frame_from_z(line, shank[:, :, 1]) @ rotation_y(np.pi / 2)

@@ -40,7 +40,7 @@ class SideCalibration:
     method: CalibrationMethod = "wands"
     """How the knee axis was found."""
     foot_flat: bool | None = None
-    """Whether the sole was taken to lie flat in the static; None when the offsets were not computed from a static."""
+    """Whether the sole was taken to lie flat in the static; None when there is no static."""
     offsets: Literal["file", "static", "none"] = "none"
     """Where the angles come from."""
 

@@ -105,7 +105,7 @@ def _calibrate_side(
     if settings.offsets == "static":
         return computed, warnings
     if from_file.offsets == "file":
-        return replace(from_file, method=computed.method), warnings
+        return replace(from_file, method=computed.method, foot_flat=computed.foot_flat), warnings
     return computed, [*warnings, f"{side}: the file stores no static offsets; those computed from the static are used"]
 
 
