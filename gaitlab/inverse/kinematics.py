@@ -192,9 +192,9 @@ class _Trial:
 
     subject: SubjectModel
     markers: Mapping[str, np.ndarray]
-    """Positions [m], shape (n, 3)."""
+    """Positions [m], shapes (n, 3)."""
     joint_centres: Mapping[str, np.ndarray]
-    """Positions [m], shape (n, 3)."""
+    """Positions [m], shapes (n, 3)."""
     rate: float
     settings: InverseKinematicsSettings
 
@@ -202,9 +202,9 @@ class _Trial:
 @dataclass(frozen=True, kw_only=True)
 class _Fit:
     q: np.ndarray
-    """Shape (n, n_q)."""
+    """Coordinates, shape (n, n_q)."""
     used: Mapping[str, np.ndarray]
-    """Markers [m], shape (n, 3), NaN where left out."""
+    """Markers [m], shapes (n, 3), NaN where left out."""
     iterations: int
     converged: bool
 

@@ -45,7 +45,7 @@ class InverseKinematicsSettings:
     """Longest time without enough markers on a segment that is bridged [s]."""
     limit_weight: float = 100.0
     """Weight of leaving a joint's range, multiple of the coordinate's own weight in the markers' distances."""
-    tolerance: float = 5e-4
+    tolerance: float = 1e-3
     """Stop when no coordinate moved more than this [m, rad]; what is left is a fraction of it."""
     max_iterations: int = 60
 

@@ -62,16 +62,13 @@ def distant_markers(
 
 def _distance_errors(subject: SubjectModel, markers: Mapping[str, np.ndarray], names: list[str]) -> np.ndarray:
     """Absolute error of each pair's median distance [m], shape (m, m); NaN on the diagonal and for pairs never seen."""
-    m = len(names)
-    places = [markers[name][:: max(1, len(markers[name]) // SAMPLES)] for name in names]
-    errors = np.full((m, m), np.nan)
-    for i in range(m):
-        for j in range(i):
-            seen = np.linalg.norm(places[i] - places[j], axis=1)
-            seen = seen[np.isfinite(seen)]
-            if len(seen):
-                here = subject.markers[names[i]].position - subject.markers[names[j]].position
-                errors[i, j] = errors[j, i] = abs(np.median(seen) - np.linalg.norm(here))
+    y = np.array([markers[name][:: max(1, len(markers[name]) // SAMPLES)] for name in names])
+    p = np.array([subject.markers[name].position for name in names])
+    distances = np.sort(np.linalg.norm(y[:, None] - y, axis=3), axis=2)  # (m, m, samples), NaN last
+    seen = np.isfinite(distances).sum(axis=2, keepdims=True)
+    middle = np.take_along_axis(distances, np.maximum(seen - 1, 0) // 2, axis=2)[..., 0]
+    errors = np.abs(middle - np.linalg.norm(p[:, None] - p, axis=2))
+    np.fill_diagonal(errors, np.nan)
     return errors
 
 

@@ -50,13 +50,13 @@ class _Penalties:
     smoothness: np.ndarray
     """lambda / dt^4, shape (n_q,)."""
     limit: np.ndarray
-    """Shape (n_q,)."""
+    """Of leaving the range, shape (n_q,)."""
     lower: np.ndarray
-    """Shape (n_q,)."""
+    """Lowest coordinate [m, rad], shape (n_q,)."""
     upper: np.ndarray
-    """Shape (n_q,)."""
+    """Highest coordinate [m, rad], shape (n_q,)."""
     prior: np.ndarray
-    """Shape (n_q,)."""
+    """Of leaving the start, shape (n_q,)."""
     start: np.ndarray
     """Where the prior pulls to, shape (n, n_q)."""
 
