@@ -45,7 +45,7 @@ def extract(path: Path) -> RawRecording:
     header, data = c3d["header"], c3d["data"]
     points = np.moveaxis(np.asarray(data["points"][:3], dtype=float), (0, 1, 2), (2, 1, 0)).copy()  # (n, k, 3)
     residuals = np.asarray(data["meta_points"]["residuals"])[0].T  # (n, k)
-    points[(residuals < 0) | (points == 0).all(axis=2)] = np.nan
+    points[(residuals < 0) | (points == 0).all(axis=2) | ~np.isfinite(points).all(axis=2)] = np.nan
     parameters = {
         group.upper(): {name.upper(): _value(entry["value"]) for name, entry in members.items() if name[:2] != "__"}
         for group, members in c3d["parameters"].items()

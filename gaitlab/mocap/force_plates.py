@@ -50,7 +50,7 @@ def plate_channels(raw: RawRecording) -> frozenset[int]:
 
 def _used(raw: RawRecording) -> int:
     used = raw.numbers("FORCE_PLATFORM", "USED")
-    return int(used.flat[0]) if used.size else 0
+    return int(used.flat[0]) if used.size and np.isfinite(used.flat[0]) else 0
 
 
 def _plate(raw: RawRecording, k: int, kind: int, metre: float, z_up: np.ndarray) -> tuple[ForcePlate, tuple[str, ...]]:

@@ -81,7 +81,7 @@ def file_events(raw: RawRecording) -> tuple[tuple[Event, ...], tuple[str, ...]]:
     times = raw.numbers("EVENT", "TIMES")
     if not labels or times.size < 2 * len(labels):
         return (), ()
-    times = times.reshape(2, -1)
+    times = times.ravel(order="F")[: 2 * len(labels)].reshape(-1, 2).T  # stored in pairs
     seconds = 60.0 * times[0] + times[1] - raw.first_frame / raw.rate
     end = (raw.points.shape[0] - 1) / raw.rate
     events: list[Event] = []

@@ -37,6 +37,10 @@ def test_minutes_and_other_events():
     assert found == ()
 
 
+def test_more_labels_than_times_give_no_events():
+    assert events([1.6], ["Foot Strike"] * 3, ["Left"] * 3) == ((), ())
+
+
 def test_events_half_a_frame_early_belong_to_the_first_frame():
     found, _ = events([1.496], ["Foot Strike"], ["Left"])
     assert found[0].time == 0.0
