@@ -211,8 +211,8 @@ def sole_axes(
 ) -> np.ndarray:
     """Axes toes, left, up of a foot in the static, laboratory frame, shape (n, 3, 3).
 
-    The line from TOE to HEE, levelled to the height `delta` [m] of the heel above the toes where the sole lies flat, with
-    y of the shank as it was known when the offsets were measured: untorsioned with wands, else torsioned.
+    The line from TOE to HEE, levelled to the height `delta` [m] of the heel above the toes where the sole lies flat,
+    with y of the shank as it was known when the offsets were measured: untorsioned with wands, else torsioned.
     """
     letter = side[0].upper()
     line = markers[f"{letter}HEE"] - markers[f"{letter}TOE"]  # (n, 3)
