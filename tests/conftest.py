@@ -12,9 +12,10 @@ REQUIRED = "GAITLAB_REQUIRE_SHARED_DATA"
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
-    """Folder of the real recordings; skips where it is absent."""
+    """Folder of the real recordings; skips where it is absent, fails there if it is required."""
     if not SHARED_DATA.is_dir():
-        pytest.skip(f"needs the real recordings in {SHARED_DATA}")
+        give_up = pytest.fail if os.environ.get(REQUIRED) else pytest.skip
+        give_up(f"needs the real recordings in {SHARED_DATA}")
     return SHARED_DATA
 
 

@@ -1,9 +1,12 @@
 import json
+from pathlib import Path
 
 import pytest
 
 import gaitlab as package
+from gaitlab.cli.app import app
 
+README = Path(__file__).parents[2] / "README.md"
 COMMANDS = ("analyse", "inspect", "view", "schema", "demo", "demo-data")
 
 
@@ -22,6 +25,15 @@ def test_every_command_explains_itself(gaitlab, command):
     code, out, _ = gaitlab(command, "--help")
     assert code == 0
     assert "Usage" in out
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_is_in_the_readme(command):
+    assert f"`gaitlab {command}`" in README.read_text()
+
+
+def test_no_command_is_forgotten_here():
+    assert {info.name or info.callback.__name__ for info in app.registered_commands} == set(COMMANDS)
 
 
 def test_schema_is_json_and_names_the_parts_of_the_contract(gaitlab):
