@@ -11,11 +11,7 @@ import numpy as np
 from scipy.linalg import lapack
 
 from ..errors import ProblemError
-from .sparse_problem import Derivatives, Pattern, SparseStructure, pairs_in_rows
-
-AUGMENTATION = 1e5
-"""Weight of the constraints, relative to the largest second derivative, in the convexity test."""
-
+from .sparse_problem import Pattern, SparseStructure, pairs_in_rows
 
 @dataclass(frozen=True, kw_only=True)
 class BandedLU:
@@ -77,41 +73,6 @@ class KKTAssembly:
         return Pattern(self.position[np.concatenate(rows)], self.position[np.concatenate(cols)])
 
     @cached_property
-    def _primal(self) -> tuple[np.ndarray, np.ndarray, int]:
-        # Lower band of the primal matrix: place in LAPACK's storage, which entries are used, bandwidth.
-        s = self.structure
-        first, second, _ = self._pairs
-        diagonal = np.arange(s.n_w)
-        rank = np.argsort(np.argsort(self.position[: s.n_w]))
-        rows = rank[np.concatenate([s.hess.rows, s.gram.rows, s.jac_c.cols[first], diagonal])]
-        cols = rank[np.concatenate([s.hess.cols, s.gram.cols, s.jac_c.cols[second], diagonal])]
-        lower = np.flatnonzero(rows >= cols)
-        k = int(np.max(rows - cols))
-        return cols[lower] * (k + 1) + rows[lower] - cols[lower], lower, k
-
-    def is_convex(self, derivatives: Derivatives, sigma: np.ndarray, delta: float) -> bool:
-        r"""Whether :math:`H + J_c^T \Sigma J_c + \delta I` is positive definite on the null space of J_g.
-
-        Sufficient: a Cholesky factor of the matrix plus :math:`\rho J_g^T D J_g` exists (Debreu's lemma); with
-        rho as large as rounding allows it is practically necessary too.
-        """
-        first, second, row = self._pairs
-        place, lower, k = self._primal
-        rho = AUGMENTATION * max(1.0, float(np.max(np.abs(derivatives.hess), initial=0.0)))
-        jac_c = derivatives.jac_c
-        entries = np.concatenate(
-            [
-                derivatives.hess,
-                rho * derivatives.gram,
-                jac_c[first] * jac_c[second] * sigma[row],
-                np.full(self.structure.n_w, delta),
-            ]
-        )[lower]
-        band = np.bincount(place, weights=entries, minlength=self.structure.n_w * (k + 1))
-        _, info = lapack.dpbtrf(band.reshape(-1, k + 1).T, lower=True, overwrite_ab=True)
-        return info == 0
-
-    @cached_property
     def bandwidth(self) -> int:
         """Half-bandwidth of the ordered KKT matrix."""
         return int(np.max(np.abs(self._pattern.rows - self._pattern.cols)))
@@ -123,12 +84,12 @@ class KKTAssembly:
         rows, cols = self._pattern
         return cols * (3 * k + 1) + 2 * k + rows - cols
 
-    def factorise(
+    def band(
         self, derivatives: tuple[np.ndarray, np.ndarray, np.ndarray], sigma: np.ndarray, delta: tuple[float, float]
-    ) -> BandedLU | None:
-        """Factorise K for entries (hess, jac_g, jac_c), barrier weights sigma (n_c,) and (delta_w, delta_g).
+    ) -> np.ndarray:
+        """K in LAPACK's band storage, one row per column of K, shape (n, 3 bandwidth + 1).
 
-        Returns None where the matrix is singular to working precision or not finite.
+        From entries (hess, jac_g, jac_c) of shapes (nnz,), barrier weights sigma (n_c,) and (delta_w, delta_g).
         """
         hess, jac_g, jac_c = derivatives
         s, k = self.structure, self.bandwidth
@@ -136,11 +97,46 @@ class KKTAssembly:
         regularisation = np.concatenate([np.full(s.n_w, delta[0]), np.full(s.n_g, -delta[1])])
         entries = np.concatenate([hess, jac_c[first] * jac_c[second] * sigma[row], jac_g, jac_g, regularisation])
         n = s.n_w + s.n_g
-        band = np.bincount(self._flat, weights=entries, minlength=n * (3 * k + 1))
+        return np.bincount(self._flat, weights=entries, minlength=n * (3 * k + 1)).reshape(n, 3 * k + 1)
+
+    def factorise(self, band: np.ndarray) -> BandedLU | None:
+        """Factorise K, shape (n, 3 bandwidth + 1), which is overwritten; None where it is singular or not finite."""
+        k = self.bandwidth
         if not np.all(np.isfinite(band)):
             return None
-        lu, pivots, info = lapack.dgbtrf(band.reshape(n, 3 * k + 1).T, k, k, overwrite_ab=True)
+        lu, pivots, info = lapack.dgbtrf(band.T, k, k, overwrite_ab=True)
         return None if info != 0 else BandedLU(lu=lu, pivots=pivots, bandwidth=k, order=self.position)
+
+    def negative_eigenvalues(self, band: np.ndarray) -> int:
+        """Number of negative eigenvalues of K, shape (n, 3 bandwidth + 1).
+
+        Block elimination along time: by Haynsworth's formula the inertia is the sum of those of the Schur complements
+        S_k = D_k - B_k S_{k-1}^{-1} B_k', which LAPACK's Bunch-Kaufman factors tell. The minimiser's K has as many
+        negative eigenvalues as there are equality constraints.
+        """
+        ends = np.cumsum(self.structure.blocks)
+        count, previous = 0, None
+        for start, end in zip(ends - self.structure.blocks, ends, strict=True):
+            schur = self._block(band, (start, end), (start, end)).copy(order="F")
+            if previous is not None:
+                below = self._block(band, (start, end), previous[0])
+                used = np.flatnonzero(np.any(below != 0.0, axis=0))
+                unit = np.zeros((below.shape[1], len(used)), order="F")
+                unit[used, np.arange(len(used))] = 1.0
+                inverse, _ = lapack.dsytrs(previous[1], previous[2], unit, lower=True)
+                schur -= below[:, used] @ inverse[used] @ below[:, used].T
+            factor, pivots, _ = lapack.dsytrf(schur, lower=True)
+            single = pivots > 0
+            count += int(np.sum(np.diag(factor)[single] < 0.0)) + int(np.sum(~single)) // 2
+            previous = ((start, end), factor, pivots)
+        return count
+
+    def _block(self, band: np.ndarray, rows: tuple[int, int], cols: tuple[int, int]) -> np.ndarray:
+        """Dense view of the rows and columns [start, end) of K; entries outside the band are zero."""
+        k = self.bandwidth
+        i, j = np.arange(*rows)[:, None], np.arange(*cols)[None, :]
+        inside = np.abs(i - j) <= k
+        return np.where(inside, band[j, np.clip(2 * k + i - j, 0, 3 * k)], 0.0)
 
     def multiply(self, pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_rows: int) -> np.ndarray:
         """Product of a sparse matrix given by its entries with x, shape (n_cols,); result of shape (n_rows,)."""

@@ -1,7 +1,7 @@
 """Primal-dual interior-point method for problems whose KKT system is banded in time.
 
 Line-search filter method of Wächter and Biegler (Math. Program. 106, 2006) with slacks for the inequalities, the
-inertia corrected by a banded Cholesky test, and one banded LU factorisation per iteration. The final barrier parameter is a setting: a small positive one makes the solution a smooth function of
+inertia corrected after a block elimination along time, and one banded LU factorisation per iteration. The final barrier parameter is a setting: a small positive one makes the solution a smooth function of
 the problem's parameters, which the sensitivities in `nlp.sensitivity` rely on.
 """
 
@@ -152,10 +152,9 @@ class _Run:
         """Newton direction of a problem made convex on the null space of the constraints, or None."""
         sigma = x.lam_c / x.s
         delta = self._convexify(derivatives, sigma)
+        entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
         for delta_g in (0.0, 1e-9, 1e-8, 1e-7):
-            factors = self.assembly.factorise(
-                (derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma, (delta, delta_g)
-            )
+            factors = self.assembly.factorise(self.assembly.band(entries, sigma, (delta, delta_g)))
             if factors is not None:
                 step = self._solve_newton(x, values, derivatives, factors.solve)
                 if np.all(np.isfinite(step.w)):
@@ -164,8 +163,11 @@ class _Run:
 
     def _convexify(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
         """Smallest multiple of the identity, within a factor, that gives the right inertia."""
-        delta = self.delta
-        while not self.assembly.is_convex(derivatives, sigma, delta) and delta < 1e8:
+        delta, n_g = self.delta, self.structure.n_g
+        entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
+        while delta < 1e8:
+            if self.assembly.negative_eigenvalues(self.assembly.band(entries, sigma, (delta, 0.0))) == n_g:
+                break
             delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
         if delta > 0.0:
             self.last_delta = delta
@@ -212,7 +214,8 @@ class _Run:
             return None
         plain = derivatives._replace(grad=np.zeros_like(x.w), hess=np.zeros_like(derivatives.hess))
         calm = x._replace(lam_g=np.zeros_like(x.lam_g))
-        factors = self.assembly.factorise((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s, (1.0, 1e-10))
+        band = self.assembly.band((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s, (1.0, 1e-10))
+        factors = self.assembly.factorise(band)
         if factors is None:
             return None
         step = self._solve_newton(calm, values, plain, factors.solve)

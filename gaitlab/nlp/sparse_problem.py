@@ -36,8 +36,6 @@ class Derivatives(NamedTuple):
     """Entries of the Jacobian of c, shape (nnz_c,)."""
     hess: np.ndarray
     """Entries of the Hessian of f + lam_g' g - lam_c' c, both triangles, shape (nnz_h,)."""
-    gram: np.ndarray
-    """Entries of J_g' D J_g for some positive diagonal D that makes its rows of order one, shape (nnz_gram,)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,9 +48,10 @@ class SparseStructure:
     jac_g: Pattern
     jac_c: Pattern
     hess: Pattern
-    gram: Pattern
     order: np.ndarray
     """Order of (w, lam_g) along time: a permutation, shape (n_w + n_g,)."""
+    blocks: np.ndarray
+    """Sizes of consecutive blocks of that order of which only neighbours are coupled, shape (n_blocks,)."""
 
 
 class SparseProblem(Protocol):

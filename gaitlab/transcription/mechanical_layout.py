@@ -1,6 +1,5 @@
 """Where the unknowns and constraints of a collocated mechanical problem lie, for one sequence of contacts."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +39,8 @@ class MechanicalLayout:
     n_f: int
     n_r: int
     boundary: Boundary
+    limited: tuple[int, ...] = ()
+    """Coordinates q_i with limits at the nodes where they are not given."""
     redundant: frozenset[ContactRow] = frozenset()
     """Contact conditions that follow from the others and are left out (see `contact_rank`)."""
 
@@ -114,6 +115,12 @@ class MechanicalLayout:
             node = end
         return rows
 
+    def limit_columns(self) -> np.ndarray:
+        """Indices in w of the coordinates with limits, shape (n,), node by node."""
+        width = 2 * self.n_q
+        free = [(k, i) for k in range(self.n_intervals + 1) for i in self.limited if i not in self.boundary.indices(k)]
+        return np.array([width * k + i for k, i in free], dtype=np.int64)
+
     def cone_rows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Force inequalities as (row, index in w, coefficient) triplets, each of shape (nnz,)."""
         index, stage_of = self.force_index(), self.stage_of_interval()
@@ -129,8 +136,3 @@ class MechanicalLayout:
             values.append(cone[r, i])
             count += len(cone)
         return np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
-
-
-def time_order(keys_w: np.ndarray, keys_g: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Order of the unknowns (w, lam_g) by time keys of shapes (n_w,) and (n_g,); shape (n_w + n_g,)."""
-    return np.argsort(np.concatenate([keys_w, np.asarray(keys_g, dtype=float)]), kind="stable")

@@ -8,9 +8,9 @@ import casadi as ca
 import numpy as np
 
 from ..nlp.codegen import Batch
-from ..nlp.sparse_problem import Derivatives, Pattern, SparseStructure, Values, pairs_in_rows
+from ..nlp.sparse_problem import Derivatives, Pattern, SparseStructure, Values
 from .hermite import GAUSS_POINTS, hermite_coefficients
-from .mechanical_layout import ContactRow, MechanicalLayout, time_order
+from .mechanical_layout import ContactRow, MechanicalLayout
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +27,10 @@ class MechanicalData:
     """Weights of the squared tracking errors, shape (N + 1, 2 n_q); zero: no tracking."""
     given: np.ndarray
     """Given states; only the entries that the boundary names count, shape (N + 1, 2 n_q)."""
+    lower: np.ndarray
+    """Lower limits of the coordinates, used where the layout says so, shape (n_q,)."""
+    upper: np.ndarray
+    """Upper limits of the coordinates, shape (n_q,)."""
     force_weight: float = 0.0
     """Weight of the squared scaled forces, which makes redundant contact forces unique."""
     allowance: float = 0.0
@@ -49,13 +53,14 @@ class MechanicalStructure:
         self.contact = layout.contact_equalities()
         self.clear = layout.clearances()
         self.cone = layout.cone_rows()
+        self.limits = layout.limit_columns()
         self.n_w = 2 * layout.n_q * (n + 1) + int((self.force_index >= 0).sum())
         self.n_cone = 2 * sum(s.n_intervals * len(s.force_cone) for s in layout.stages)
 
     @cached_property
     def sparse(self) -> SparseStructure:
         """Patterns in the order in which `MechanicalProblem.derivatives` gives the entries."""
-        n_residual = 2 * self.layout.n_intervals * self.layout.n_r
+        n_residual, keys = 2 * self.layout.n_intervals * self.layout.n_r, self._time_keys()
         fixed = [*self.fixed_columns]
         contact_rows, contact_cols = self.contact_pattern(self.contact)
         n_contact = len(self.contact)
@@ -63,21 +68,24 @@ class MechanicalStructure:
         residual_cols = np.repeat(self.point_index[:, None, :], self.layout.n_r, axis=1)
         kept = residual_cols >= 0
         fixed_rows = n_residual + n_contact + np.arange(len(fixed))
+        first_limit = self.n_cone + len(self.clear)
         clear_rows, clear_cols = self.contact_pattern(self.clear)
         return SparseStructure(
             n_w=self.n_w,
             n_g=n_residual + n_contact + len(fixed),
-            n_c=self.n_cone + len(self.clear),
+            n_c=self.n_cone + len(self.clear) + 2 * len(self.limits),
             jac_g=Pattern(
                 np.concatenate([residual_rows[kept], n_residual + contact_rows, fixed_rows]),
                 np.concatenate([residual_cols[kept], contact_cols, np.array(fixed, dtype=np.int64)]),
             ),
             jac_c=Pattern(
-                np.concatenate([self.cone[0], self.n_cone + clear_rows]), np.concatenate([self.cone[1], clear_cols])
+                np.concatenate([self.cone[0], self.n_cone + clear_rows, first_limit + np.arange(2 * len(self.limits))]),
+                np.concatenate([self.cone[1], clear_cols, self.limits, self.limits]),
             ),
             hess=self._hessian_pattern(),
-            gram=self._gram_pattern(),
-            order=self._order(),
+            order=np.argsort(keys, kind="stable"),
+            # A block holds a node and the interval before it.
+            blocks=np.bincount(np.ceil(keys - 0.2).astype(np.int64)),
         )
 
     @property
@@ -122,35 +130,6 @@ class MechanicalStructure:
         used = self.point_index >= 0
         return used[:, :, None] & used[:, None, :]
 
-    @cached_property
-    def contact_entry_rows(self) -> np.ndarray:
-        """Row of each entry of the contact Jacobian, shape (nnz,)."""
-        return self.contact_pattern(self.contact)[0]
-
-    @cached_property
-    def contact_pairs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pairs of structural nonzeros in the same contact row: (row, first entry, second entry)."""
-        n_q, width = self.layout.n_q, 2 * self.layout.n_q
-        term_row, _, component, _ = self.contact_terms
-        rows: list[np.ndarray] = []
-        entries: list[np.ndarray] = []
-        for term, (r, c) in enumerate(zip(term_row, component, strict=True)):
-            # Positions do not depend on velocities.
-            own = term * width + np.arange(n_q if c < self.layout.n_f else width)
-            rows.append(np.full(len(own), r))
-            entries.append(own)
-        return pairs_in_rows(np.concatenate(rows), np.concatenate(entries))
-
-    def _gram_pattern(self) -> Pattern:
-        local = self._hessian_pattern()
-        n_local = int(self.hessian_kept.sum())
-        _, first, second = self.contact_pairs
-        cols = self.contact_pattern(self.contact)[1]
-        return Pattern(
-            np.concatenate([local.rows[:n_local], cols[first], self.fixed_columns]),
-            np.concatenate([local.cols[:n_local], cols[second], self.fixed_columns]),
-        )
-
     def _hessian_pattern(self) -> Pattern:
         z, width = self.point_index, 2 * self.layout.n_q
         shape = self.hessian_kept.shape
@@ -163,14 +142,14 @@ class MechanicalStructure:
         diagonal = np.arange(self.n_w)
         return Pattern(np.concatenate([rows, node_rows, diagonal]), np.concatenate([cols, node_cols, diagonal]))
 
-    def _order(self) -> np.ndarray:
+    def _time_keys(self) -> np.ndarray:
         n, layout = self.layout.n_intervals, self.layout
         states = np.repeat(np.arange(n + 1.0), 2 * layout.n_q)
         forces = np.repeat(np.arange(2 * n) // 2 + 0.5, (self.force_index >= 0).sum(axis=1))
         residuals = np.repeat(np.arange(2 * n) // 2 + 0.5, layout.n_r)
         contacts = [(r.node - 0.5 if r.minus_node >= 0 else r.node - 0.4) for r in self.contact]
         fixed = self.fixed_columns // (2 * layout.n_q) + 0.1
-        return time_order(np.concatenate([states, forces]), np.concatenate([residuals, contacts, fixed]))
+        return np.concatenate([states, forces, residuals, contacts, fixed])
 
 
 @dataclass(frozen=True)
@@ -233,9 +212,9 @@ class MechanicalProblem:
         f += 0.5 * d.force_weight * (s.weights @ np.sum(forces**2, axis=1))
         g = np.concatenate([y[:, : s.layout.n_r].ravel(), self._rows(s.contact_terms, contact, len(s.contact)), self._fixed(w)])
         cone = np.bincount(s.cone[0], weights=s.cone[2] * w[s.cone[1]], minlength=s.n_cone)
-        return Values(
-            float(f), g, np.concatenate([cone, self._rows(s.clear_terms, contact, len(s.clear)) + d.allowance])
-        )
+        clear = self._rows(s.clear_terms, contact, len(s.clear)) + d.allowance
+        limited, q = s.limits % (2 * s.layout.n_q), w[s.limits]
+        return Values(float(f), g, np.concatenate([cone, clear, q - d.lower[limited], d.upper[limited] - q]))
 
     def _rows(
         self, terms: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray], contact: np.ndarray, n: int
@@ -252,31 +231,18 @@ class MechanicalProblem:
         s, d = self.shared, self.data
         n_residual = 2 * s.layout.n_intervals * s.layout.n_r
         jac, grad, hess = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(-1, s.layout.n_r))
-        mu = self._node_multipliers(lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone :])
+        mu = self._node_multipliers(lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)])
         contact_jac, contact_hess = s.evaluate["node_derivatives"](self.states(w), d.p, mu)
         jac_r = np.swapaxes(self._to_local(jac), 1, 2)  # (2 N, n_r, n_z)
-        kept = np.broadcast_to((s.point_index >= 0)[:, None, :], jac_r.shape)
+        kept, unit = np.broadcast_to((s.point_index >= 0)[:, None, :], jac_r.shape), np.ones(len(s.limits))
         jac_g = [jac_r[kept], self._contact_entries(s.contact_terms, contact_jac), np.ones(len(s.fixed_columns))]
         hess_local = self._to_local(np.swapaxes(self._to_local(hess), 1, 2))
         return Derivatives(
             grad=self._gradient(w, grad),
             jac_g=np.concatenate(jac_g),
-            jac_c=np.concatenate([s.cone[2], self._contact_entries(s.clear_terms, contact_jac)]),
+            jac_c=np.concatenate([s.cone[2], self._contact_entries(s.clear_terms, contact_jac), unit, -unit]),
             hess=np.concatenate([hess_local[s.hessian_kept], contact_hess.ravel(), self._diagonal()]),
-            gram=self._gram(jac_r, contact_jac),
         )
-
-    def _gram(self, jac_r: np.ndarray, contact_jac: np.ndarray) -> np.ndarray:
-        """Entries of J' D J with unit rows: residuals point by point, contact rows pair by pair, given states."""
-        s = self.shared
-        used = np.where((s.point_index >= 0)[:, None, :], jac_r, 0.0)
-        unit = used / np.maximum(np.linalg.norm(used, axis=2, keepdims=True), 1e-12)
-        local = np.swapaxes(unit, 1, 2) @ unit
-        entries = self._contact_entries(s.contact_terms, contact_jac)
-        row, first, second = s.contact_pairs
-        norms = np.bincount(s.contact_entry_rows, weights=entries**2, minlength=len(s.contact))
-        pairs = entries[first] * entries[second] / np.maximum(norms[row], 1e-24)
-        return np.concatenate([local[s.hessian_kept], pairs, np.ones(len(s.fixed_columns))])
 
     def _point_derivatives(self, z: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Transposed residual Jacobian, cost gradient and Hessian of the Lagrangian in (q, v, a, f) at each point.
