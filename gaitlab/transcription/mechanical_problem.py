@@ -31,6 +31,8 @@ class MechanicalData:
     """Lower limits of the coordinates, used where the layout says so, shape (n_q,)."""
     upper: np.ndarray
     """Upper limits of the coordinates, shape (n_q,)."""
+    acceleration_weights: np.ndarray
+    """Weights of the squared accelerations, 1/2 int sum_i alpha_i a_i^2 dt, shape (n_q,)."""
     force_weight: float = 0.0
     """Weight of the squared scaled forces, which makes redundant contact forces unique."""
     allowance: float = 0.0
@@ -209,6 +211,8 @@ class MechanicalProblem:
         error = self.states(w) - d.reference
         forces = z[:, 3 * s.layout.n_q :]
         f = s.weights @ (criteria @ d.theta) + 0.5 * np.sum(d.tracking * error**2)
+        accelerations = z[:, 2 * s.layout.n_q : 3 * s.layout.n_q]
+        f += 0.5 * s.weights @ (accelerations**2 @ d.acceleration_weights)
         f += 0.5 * d.force_weight * (s.weights @ np.sum(forces**2, axis=1))
         g = np.concatenate([y[:, : s.layout.n_r].ravel(), self._rows(s.contact_terms, contact, len(s.contact)), self._fixed(w)])
         cone = np.bincount(s.cone[0], weights=s.cone[2] * w[s.cone[1]], minlength=s.n_cone)
@@ -260,7 +264,12 @@ class MechanicalProblem:
         mu = slope[:, :n_y].copy()
         mu[:, : s.layout.n_r] += lam
         hess = s.evaluate["output_hessian"](z, d.p, mu)[0] + jac @ curvature @ np.swapaxes(jac, 1, 2)
-        return jac[:, :, : s.layout.n_r], (jac @ slope[:, :, None])[:, :, 0], hess
+        gradient = (jac @ slope[:, :, None])[:, :, 0]
+        smooth = s.weights[:, None] * d.acceleration_weights
+        gradient[:, 2 * n_q : 3 * n_q] += smooth * z[:, 2 * n_q : 3 * n_q]
+        diagonal = np.arange(2 * n_q, 3 * n_q)
+        hess[:, diagonal, diagonal] += smooth
+        return jac[:, :, : s.layout.n_r], gradient, hess
 
     def criterion_gradients(self, w: np.ndarray) -> np.ndarray:
         """Gradients of the integrated criteria, shape (n_w, n_criteria)."""

@@ -1,0 +1,53 @@
+r"""How a solution moves with the parameters of its problem.
+
+Differentiating the barrier problem's optimality conditions gives one linear system with the matrix of the last
+Newton step (implicit function theorem; Fiacco 1976; Pirnay, Lopez-Negrete, Biegler 2012). Active inequalities need no
+bookkeeping: their barrier weights are what holds the solution to them.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .banded import BandedLU, KKTAssembly
+from .sparse_problem import Derivatives, SparseProblem
+from .sparse_solution import SparseSolution
+
+
+class Sensitivity:
+    """Factorised KKT system of one solution, for any number of right-hand sides."""
+
+    def __init__(self, problem: SparseProblem, solution: SparseSolution) -> None:
+        self.solution, self.structure = solution, problem.structure
+        self.assembly = KKTAssembly(self.structure)
+        self.sigma = solution.lam_c / solution.s
+        self.derivatives: Derivatives = problem.derivatives(solution.w, solution.lam_g, solution.lam_c)
+        self._band = self.assembly.band(
+            (self.derivatives.hess, self.derivatives.jac_g, self.derivatives.jac_c), self.sigma, (0.0, 0.0)
+        )
+
+    def is_minimum(self) -> bool:
+        """Second-order sufficiency: the reduced Hessian is positive definite (inertia of the KKT matrix)."""
+        return self.assembly.negative_eigenvalues(self._band) == self.structure.n_g
+
+    def of_objective(self, mixed: np.ndarray) -> np.ndarray:
+        """Derivative of (w, lam_g) when grad f moves by `mixed`, shape (n_w, m); result (n_w + n_g, m)."""
+        rhs = np.zeros((self.structure.n_w + self.structure.n_g, mixed.shape[1]))
+        rhs[: self.structure.n_w] = -mixed
+        return self._factors().solve(rhs)
+
+    def _factors(self) -> BandedLU:
+        factors = self.assembly.factorise(self._band.copy())
+        if factors is None:
+            raise np.linalg.LinAlgError("the KKT matrix of the solution is singular")
+        return factors
+
+    def predict(self, direction: np.ndarray) -> SparseSolution:
+        """First-order prediction of the solution after a move, direction of (w, lam_g), shape (n_w + n_g,)."""
+        x, n_w = self.solution, self.structure.n_w
+        dw = direction[:n_w]
+        ds = self.assembly.multiply(self.structure.jac_c, self.derivatives.jac_c, dw, self.structure.n_c)
+        # A linear prediction must not leave the interior.
+        s = np.maximum(x.s + ds, 0.1 * x.s)
+        lam_c = np.maximum(x.lam_c - self.sigma * ds, 0.1 * x.lam_c)
+        return replace(x, w=x.w + dw, s=s, lam_g=x.lam_g + direction[n_w:], lam_c=lam_c)
