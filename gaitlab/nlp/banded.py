@@ -13,6 +13,7 @@ from scipy.linalg import lapack
 from ..errors import ProblemError
 from .sparse_problem import Pattern, SparseStructure, pairs_in_rows
 
+
 @dataclass(frozen=True, kw_only=True)
 class BandedLU:
     """Factorised banded matrix."""

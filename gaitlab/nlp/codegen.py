@@ -84,10 +84,10 @@ class Batch:
         ]
         buffer, trigger = self._mapped.buffer()
         for i, value in enumerate(inputs):
-            buffer.set_arg(i, memoryview(value))
+            buffer.set_arg(i, value.data)  # pyright: ignore[reportCallIssue] (SWIG takes the size from the view)
         results = [np.empty((self.n, f.numel_out(i))) for i in range(f.n_out())]
         for i, result in enumerate(results):
-            buffer.set_res(i, memoryview(result))
+            buffer.set_res(i, result.data)  # pyright: ignore[reportCallIssue]
         trigger()
         return [
             r if f.size2_out(i) == 1 else r.reshape(self.n, f.size2_out(i), f.size1_out(i))

@@ -50,7 +50,8 @@ def backtrack(
 ) -> tuple[float, np.ndarray, np.ndarray, Values] | None:
     """Halve alpha until the filter accepts trial(alpha) -> (w, s, values); None where the step becomes too short.
 
-    `slope` is the derivative of the barrier function along the step.
+    `slope` is the derivative of the barrier function along the step. Returns (alpha, w, s, values) of the accepted
+    point, w of shape (n_w,), s of shape (n_c,).
     """
     shortest = SHORTEST * alpha
     # Rounding: near the solution the barrier function cannot be compared below this (Wächter and Biegler, sec. 3.10).

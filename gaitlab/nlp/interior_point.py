@@ -1,8 +1,9 @@
 """Primal-dual interior-point method for problems whose KKT system is banded in time.
 
 Line-search filter method of Wächter and Biegler (Math. Program. 106, 2006) with slacks for the inequalities, the
-inertia corrected after a block elimination along time, and one banded LU factorisation per iteration. The final barrier parameter is a setting: a small positive one makes the solution a smooth function of
-the problem's parameters, which the sensitivities in `nlp.sensitivity` rely on.
+inertia corrected after a block elimination along time, and one banded LU factorisation per iteration. The final
+barrier parameter is a setting: a small positive one makes the solution a smooth function of the problem's parameters,
+which sensitivities rely on.
 """
 
 from collections.abc import Callable
@@ -21,18 +22,26 @@ class Iterate(NamedTuple):
     """Primal and dual unknowns."""
 
     w: np.ndarray
+    """Variables, shape (n_w,)."""
     s: np.ndarray
+    """Slacks of the inequalities, positive, shape (n_c,)."""
     lam_g: np.ndarray
+    """Multipliers of g = 0, shape (n_g,)."""
     lam_c: np.ndarray
+    """Multipliers of c >= 0, positive, shape (n_c,)."""
 
 
 class Step(NamedTuple):
     """Newton direction in all unknowns."""
 
     w: np.ndarray
+    """Change of the variables, shape (n_w,)."""
     s: np.ndarray
+    """Change of the slacks, shape (n_c,)."""
     lam_g: np.ndarray
+    """Change of the multipliers of g = 0, shape (n_g,)."""
     lam_c: np.ndarray
+    """Change of the multipliers of c >= 0, shape (n_c,)."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from .sparse_problem import Pattern, SparseProblem
 from .solution import KKTResiduals
+from .sparse_problem import Pattern, SparseProblem
 
 
 class Status(StrEnum):
@@ -83,7 +83,7 @@ def certify(problem: SparseProblem, x: PrimalDual, *, mu: float, iterations: int
     )
     residuals = KKTResiduals(
         stationarity=_norm(stationarity),
-        primal=max(_norm(values.g), _norm(np.minimum(values.c, 0.0))),
+        primal=_norm(np.concatenate([values.g, np.minimum(values.c, 0.0)])),
         complementarity=_norm(values.c * x.lam_c),
     )
     return SparseSolution(

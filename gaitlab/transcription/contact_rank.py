@@ -8,6 +8,7 @@ numerically, at a posture that satisfies them all.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import cast
 
 import casadi as ca
 import numpy as np
@@ -28,7 +29,7 @@ def without_redundant_contacts(
     if not rows:
         return layout
     jacobian = _free_jacobian(layout, rows, Batch(functions["node_derivatives"], len(states)), (p, states))
-    triangle, order = qr(jacobian.T, mode="r", pivoting=True)
+    triangle, order = cast("tuple[np.ndarray, np.ndarray]", qr(jacobian.T, mode="r", pivoting=True))
     diagonal = np.abs(np.diag(triangle))
     rank = int(np.sum(diagonal > RANK_TOLERANCE * diagonal[0]))
     return replace(layout, redundant=layout.redundant | {rows[i] for i in order[rank:]})

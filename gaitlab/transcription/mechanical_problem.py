@@ -118,12 +118,12 @@ class MechanicalStructure:
 
     @cached_property
     def contact_terms(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Terms of the contact equalities."""
+        """Terms (row, node, component, sign) of the contact equalities, each of shape (n_terms,)."""
         return self.contact_nodes(self.contact)
 
     @cached_property
     def clear_terms(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Terms of the clearances."""
+        """Terms (row, node, component, sign) of the clearances, each of shape (n_terms,)."""
         return self.contact_nodes(self.clear)
 
     @cached_property
@@ -202,7 +202,7 @@ class MechanicalProblem:
         return self.shared.evaluate["criteria"](y, self._velocities(z), self.data.p, self.shared.data)[0]
 
     def values(self, w: np.ndarray) -> Values:
-        """Objective and constraints."""
+        """Objective and constraints at w, shape (n_w,)."""
         s, d = self.shared, self.data
         z = self.points(w)
         y = self._outputs(z)
@@ -214,7 +214,9 @@ class MechanicalProblem:
         accelerations = z[:, 2 * s.layout.n_q : 3 * s.layout.n_q]
         f += 0.5 * s.weights @ (accelerations**2 @ d.acceleration_weights)
         f += 0.5 * d.force_weight * (s.weights @ np.sum(forces**2, axis=1))
-        g = np.concatenate([y[:, : s.layout.n_r].ravel(), self._rows(s.contact_terms, contact, len(s.contact)), self._fixed(w)])
+        g = np.concatenate(
+            [y[:, : s.layout.n_r].ravel(), self._rows(s.contact_terms, contact, len(s.contact)), self._fixed(w)]
+        )
         cone = np.bincount(s.cone[0], weights=s.cone[2] * w[s.cone[1]], minlength=s.n_cone)
         clear = self._rows(s.clear_terms, contact, len(s.clear)) + d.allowance
         limited, q = s.limits % (2 * s.layout.n_q), w[s.limits]
@@ -231,11 +233,13 @@ class MechanicalProblem:
         return w[columns] - self.data.given.ravel()[columns]
 
     def derivatives(self, w: np.ndarray, lam_g: np.ndarray, lam_c: np.ndarray) -> Derivatives:
-        """First and second derivatives."""
+        """First and second derivatives at w, shape (n_w,), multipliers (n_g,) and (n_c,)."""
         s, d = self.shared, self.data
         n_residual = 2 * s.layout.n_intervals * s.layout.n_r
         jac, grad, hess = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(-1, s.layout.n_r))
-        mu = self._node_multipliers(lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)])
+        mu = self._node_multipliers(
+            lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)]
+        )
         contact_jac, contact_hess = s.evaluate["node_derivatives"](self.states(w), d.p, mu)
         jac_r = np.swapaxes(self._to_local(jac), 1, 2)  # (2 N, n_r, n_z)
         kept, unit = np.broadcast_to((s.point_index >= 0)[:, None, :], jac_r.shape), np.ones(len(s.limits))
@@ -300,7 +304,7 @@ class MechanicalProblem:
         return np.stack(columns, axis=1)
 
     def _gradient(self, w: np.ndarray, point_gradient: np.ndarray) -> np.ndarray:
-        s, d = self.shared, self.data
+        d = self.data
         gradient = self.scatter_gradient(point_gradient[:, :, None])[:, 0]
         n_x = d.tracking.size
         gradient[:n_x] += (d.tracking * (self.states(w) - d.reference)).ravel()

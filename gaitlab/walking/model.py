@@ -31,7 +31,7 @@ ROOT = 6
 
 def body_weight(layout: ModelLayout, p: ca.SX) -> ca.SX:
     """Weight of the body [N] from the parameter vector."""
-    return GRAVITY * sum(p[SEGMENT_PARAMETERS * i + 6] for i in range(len(layout.parents)))
+    return GRAVITY * sum((p[SEGMENT_PARAMETERS * i + 6] for i in range(len(layout.parents))), start=ca.SX(0))
 
 
 def walking_model(layout: ModelLayout) -> MechanicalModel:
