@@ -16,6 +16,8 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 
+from ..errors import ProblemError
+
 
 def cache_directory() -> Path:
     """Folder of compiled functions: $GAITLAB_CACHE, else $XDG_CACHE_HOME/gaitlab, else ~/.cache/gaitlab."""
@@ -34,9 +36,21 @@ def compile_functions(functions: Sequence[ca.Function], name: str) -> dict[str, 
     source = _source(functions, name)
     key = hashlib.sha256(source.encode() + ca.CasadiMeta.version().encode()).hexdigest()[:20]
     library = cache_directory() / f"{name}_{key}.so"
-    if not library.exists() and not _build(compiler, source, library):
-        return {f.name(): f for f in functions}
-    return {f.name(): ca.external(f.name(), str(library)) for f in functions}
+    names = [f.name() for f in functions]
+    loaded = _load(names, library)
+    if loaded is None and _build(compiler, source, library):
+        loaded = _load(names, library)
+    return loaded or {f.name(): f for f in functions}
+
+
+def _load(names: Sequence[str], library: Path) -> dict[str, ca.Function] | None:
+    """Functions of the library; None where it does not exist or cannot be loaded, for instance a damaged file."""
+    if not library.exists():
+        return None
+    try:
+        return {name: ca.external(name, str(library)) for name in names}
+    except RuntimeError:
+        return None
 
 
 def _source(functions: Sequence[ca.Function], name: str) -> str:
@@ -70,6 +84,11 @@ class Batch:
     _mapped: ca.Function = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        f = self.function
+        sparse = [name for name in f.name_in() if not f.sparsity_in(name).is_dense()]
+        sparse += [name for name in f.name_out() if not f.sparsity_out(name).is_dense()]
+        if sparse:
+            raise ProblemError(f"{f.name()} must have dense arguments and results (ca.densify), {sparse} are sparse")
         object.__setattr__(self, "_mapped", self.function.map(self.n))
 
     def __call__(self, *arguments: np.ndarray) -> list[np.ndarray]:

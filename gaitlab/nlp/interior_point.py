@@ -17,6 +17,11 @@ from .filter_search import Filter, Merit, backtrack
 from .sparse_problem import Derivatives, SparseProblem, Values
 from .sparse_solution import SparseSolution, Status, certify
 
+LARGEST_DELTA = 1e8
+"""Multiple of the identity beyond which convexifying is given up."""
+DEPENDENT = (0.0, 1e-9, 1e-8, 1e-7)
+"""Regularisations delta_g tried where the KKT matrix is singular."""
+
 
 class Iterate(NamedTuple):
     """Primal and dual unknowns."""
@@ -85,7 +90,7 @@ class _Run:
         self.structure = problem.structure
         self.assembly = KKTAssembly(self.structure)
         self.mu = method.mu_initial
-        self.delta, self.last_delta = 0.0, 0.0
+        self.delta, self.last_delta, self.delta_g = 0.0, 0.0, 0.0
         self.filter = Filter()
 
     def solve(self, start: SparseSolution | np.ndarray) -> SparseSolution:
@@ -109,10 +114,10 @@ class _Run:
         return self._end(x, self.method.max_iter, Status.ITERATION_LIMIT)
 
     def _first(self, start: SparseSolution | np.ndarray) -> Iterate:
+        if isinstance(start, SparseSolution) and start.mu <= 10.0 * self.mu:
+            return Iterate(start.w, start.s, start.lam_g, start.lam_c)
         if isinstance(start, SparseSolution):
-            floor = np.sqrt(self.mu) * 1e-2
-            c = self.problem.values(start.w).c
-            s = np.maximum(np.maximum(c, start.s), np.minimum(floor, self.mu / np.maximum(start.lam_c, 1e-12)))
+            s = np.maximum(start.s, 1e-2 * np.sqrt(self.mu))
             return Iterate(start.w, s, start.lam_g, np.clip(start.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s))
         s = np.maximum(self.problem.values(start).c, 1e-2)
         return Iterate(start.copy(), s, np.zeros(self.structure.n_g), self.mu / s)
@@ -149,9 +154,7 @@ class _Run:
         self.delta = 0.0
         for _ in range(12):
             step = self._direction(x, values, derivatives)
-            if step is None:
-                return None
-            moved = self._search(x, values, derivatives, step)
+            moved = None if step is None else self._search(x, values, derivatives, step)
             if moved is not None:
                 return moved
             self.delta = max(1e-4, 10.0 * max(self.delta, self.last_delta))
@@ -162,7 +165,7 @@ class _Run:
         sigma = x.lam_c / x.s
         delta = self._convexify(derivatives, sigma)
         entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
-        for delta_g in (0.0, 1e-9, 1e-8, 1e-7):
+        for delta_g in DEPENDENT[DEPENDENT.index(self.delta_g) :]:
             factors = self.assembly.factorise(self.assembly.band(entries, sigma, (delta, delta_g)))
             if factors is not None:
                 step = self._solve_newton(x, values, derivatives, factors.solve)
@@ -172,14 +175,22 @@ class _Run:
 
     def _convexify(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
         """Smallest multiple of the identity, within a factor, that gives the right inertia."""
-        delta, n_g = self.delta, self.structure.n_g
-        entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
-        while delta < 1e8:
-            if self.assembly.negative_eigenvalues(self.assembly.band(entries, sigma, (delta, 0.0))) == n_g:
-                break
-            delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
+        delta = self._right_inertia(derivatives, sigma)
+        if delta >= LARGEST_DELTA and self.delta_g == 0.0:
+            # Dependent equations: no delta_w helps, and from here on the multipliers are regularised instead.
+            self.delta_g = DEPENDENT[2]
+            delta = self._right_inertia(derivatives, sigma)
         if delta > 0.0:
             self.last_delta = delta
+        return delta
+
+    def _right_inertia(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
+        delta, n_g = self.delta, self.structure.n_g
+        entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
+        while delta < LARGEST_DELTA:
+            if self.assembly.negative_eigenvalues(self.assembly.band(entries, sigma, (delta, self.delta_g))) == n_g:
+                break
+            delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
         return delta
 
     def _solve_newton(
