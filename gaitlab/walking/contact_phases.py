@@ -64,7 +64,7 @@ def contact_phases(
         heel, toe = points[f"{side}_heel"], points[f"{side}_toe"]
         stances = stance_frames(events, side, rate, len(q))
         rise = heel[:, 2] - toe[:, 2]
-        resting = np.fmax(_speed(heel, rate), _speed(toe, rate)) < settings.resting_speed * walking_speed
+        resting = np.maximum(_speed(heel, rate), _speed(toe, rate)) < settings.resting_speed * walking_speed
         rise = rise - _flat_level(rise, resting, stances, settings.largest_tilt)
         for stance in stances:
             phases[stance, column] = _parts(rise[stance], settings)

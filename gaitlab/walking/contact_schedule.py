@@ -5,7 +5,7 @@ coordinates redundant, so the toe's component along the foot is left out, and th
 this direction. Landings are soft: points come to rest as they touch (design/numerics.md, item 7).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import InvalidRecording, ProblemError
 from ..ocp.mechanical import ContactStage
 from .contact_phases import FLAT, FREE, HEEL, TOE
-from .contact_timing import closest_stages
+from .contact_timing import closest_stages, long_runs
 
 N_FORCES = 12
 """Force components 3 i + (x, y, z) of the points i in `model.POINTS`."""
@@ -33,6 +33,8 @@ class ScheduleSettings:
     """Coefficient of friction of shoe or skin on a laboratory's floor, dry."""
     shortest_flight: float = 0.06
     """Both feet in the air for less than this [s] is an error of the events, for more it is running."""
+    longest_flight: float = 0.25
+    """Both feet in the air for longer than this [s] is a stance whose events are missing."""
 
 
 DEFAULTS = ScheduleSettings()
@@ -86,7 +88,7 @@ class _Foot:
         f_z >= 0 at each point. |f_across| <= c f_z at each point and |sum f_along| <= c sum f_z over the foot, which
         carries it at one point only, with c = friction / sqrt(2): the pyramid inscribed in the cone of friction.
         """
-        c = friction / np.sqrt(2.0)
+        c = float(friction / np.sqrt(2.0))
         upright = self.heights(self.points)
         across = [i - Z + 1 - self.along for i in upright]
         along = [i for i in self.active() if i % 3 == self.along]
@@ -94,7 +96,7 @@ class _Foot:
         for sign in (1.0, -1.0):
             rows += [_row({z: c, i: sign}) for z, i in zip(upright, across, strict=True)]
             if along:
-                rows.append(_row(dict.fromkeys(upright, c) | dict.fromkeys(along, sign)))
+                rows.append(_row({**dict.fromkeys(upright, c), **dict.fromkeys(along, sign)}))
         return rows
 
 
@@ -116,9 +118,10 @@ def contact_stages(
             the toe's y takes the part of its x. See `contact_phases.foot_directions`.
 
     Raises:
-        InvalidRecording: The stride is not within the frames or too short for a stage.
+        InvalidRecording: The stride is not within the frames, too short for a stage, or a stance is missing in it.
     """
     first, last = _frames(len(phases), rate, stride, settings)
+    _check_flight(phases[first:last], rate, stride, settings)
     cut = closest_stages(phases[first:last], _shortest(rate, settings), _at_least(settings.shortest_flight * rate))
     along = [int(abs(np.sin(angle)) > abs(np.cos(angle))) for angle in directions]
     stages: list[ContactStage] = []
@@ -182,7 +185,7 @@ def _stage(
     )
 
 
-def _row(entries: dict[int, float]) -> np.ndarray:
+def _row(entries: Mapping[int, float]) -> np.ndarray:
     row = np.zeros(N_FORCES)
     row[list(entries)] = list(entries.values())
     return row
@@ -202,6 +205,16 @@ def _frames(n_frames: int, rate: float, stride: tuple[float, float], settings: S
             f"intervals of {settings.interval:g} s; a stride goes from a foot strike to the next one of the same foot"
         )
     return first, last
+
+
+def _check_flight(phases: np.ndarray, rate: float, stride: tuple[float, float], settings: ScheduleSettings) -> None:
+    flight = long_runs((phases == FREE).all(axis=1), _at_least(settings.longest_flight * rate))
+    if flight.any():
+        raise InvalidRecording(
+            f"in the stride at {stride[0]:.2f}-{stride[1]:.2f} s no foot stands from "
+            f"{stride[0] + np.argmax(flight) / rate:.2f} s on for more than {settings.longest_flight:g} s: a foot "
+            "strike is missing; let the events be detected again or choose another stride"
+        )
 
 
 def _shortest(rate: float, settings: ScheduleSettings) -> int:

@@ -66,12 +66,12 @@ def _costs(phases: np.ndarray, shortest_flight: int) -> np.ndarray:
     different = phases[:, None] != pairs  # (n, 16, 2)
     support = (phases == FREE)[:, None] != (pairs == FREE)
     costs = np.where(support, SUPPORT_COST, different.astype(float)).sum(axis=2)
-    flight = _long_runs((phases == FREE).all(axis=1), shortest_flight)
+    flight = long_runs((phases == FREE).all(axis=1), shortest_flight)
     costs[np.ix_(~flight, (pairs == FREE).all(axis=1))] = FORBIDDEN
     return costs
 
 
-def _long_runs(flags: np.ndarray, shortest: int) -> np.ndarray:
+def long_runs(flags: np.ndarray, shortest: int) -> np.ndarray:
     """Flags (n,) without the runs that are shorter than `shortest`."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
     kept = np.zeros_like(flags)
