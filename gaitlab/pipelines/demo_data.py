@@ -1,10 +1,50 @@
-"""The demo recordings, simulated from known weights."""
+"""The demo recordings of both children: `gaitlab demo-data` writes them."""
 
+from dataclasses import replace
 from pathlib import Path
 
-from ..errors import ProblemError
+import numpy as np
+
+from ..errors import OutputError
+from ..mocap.c3d import write_c3d
+from ..multibody.presets import ABLE_BODIED_CHILD, CP_CHILD
+from .demo_gait import reference_gait
+from .demo_markers import body_parameters, standing_coordinates, with_markers
+from .demo_patterns import GaitPattern, demo_patterns
+from .demo_recording import Laboratory, static_recording, walk_recording
+from .demo_reference import reference_walk
+
+HEIGHTS = {child.name: child.height for child in (CP_CHILD, ABLE_BODIED_CHILD)}
+"""[m]"""
+WALKS = {
+    "walk1": (1.0, Laboratory()),
+    "walk2": (0.95, Laboratory(heading=np.pi, noise=5e-4, seed=2)),
+}
+"""Name to the stride time as a share of the pattern's, and the laboratory."""
 
 
 def write_demo_data(directory: Path) -> None:
-    """Write the demo recordings of both children into a folder."""
-    raise ProblemError(f"{directory}: the demo recordings cannot be simulated yet")
+    """Write the demo recordings of both children into a folder, one folder for each child.
+
+    Raises:
+        OutputError: The folder cannot be written.
+    """
+    for pattern in demo_patterns():
+        folder = directory / pattern.name
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{folder}: cannot be made ({error}); choose another folder") from error
+        _write_child(folder, pattern)
+
+
+def _write_child(folder: Path, pattern: GaitPattern) -> None:
+    subject = pattern.preset()
+    parameters = body_parameters(subject, HEIGHTS[subject.name])
+    subject = with_markers(subject, parameters, pattern.tilt)
+    standing = standing_coordinates(subject, pattern)
+    write_c3d(folder / "static.c3d", static_recording(subject, standing, parameters))
+    for name, (pace, laboratory) in WALKS.items():
+        paced = replace(pattern, stride_time=pace * pattern.stride_time, speed=pattern.speed / pace**0.5)
+        walk = replace(reference_walk(reference_gait(paced)), subject=subject)
+        write_c3d(folder / f"{name}.c3d", walk_recording(name, walk, parameters, laboratory))
