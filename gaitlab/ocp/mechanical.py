@@ -78,3 +78,9 @@ class ContactStage:
                 f"stage '{self.label}' needs a positive duration and at least one interval, "
                 f"got {self.duration:g} s and {self.n_intervals}"
             )
+        loaded = {int(i) for i in np.nonzero(self.force_cone)[1]}
+        if not loaded <= set(self.active):
+            raise ProblemError(
+                f"the force cone of stage '{self.label}' may only use active components {sorted(self.active)}, "
+                f"it uses {sorted(loaded - set(self.active))} too"
+            )

@@ -236,7 +236,7 @@ class MechanicalProblem:
         """First and second derivatives at w, shape (n_w,), multipliers (n_g,) and (n_c,)."""
         s, d = self.shared, self.data
         n_residual = 2 * s.layout.n_intervals * s.layout.n_r
-        jac, grad, hess = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(-1, s.layout.n_r))
+        jac, grad, hess = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(s.residual_shape[:2]))
         mu = self._node_multipliers(
             lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)]
         )
