@@ -1,5 +1,6 @@
 """The demo recordings of both children: `gaitlab demo-data` writes them."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,11 +17,12 @@ from .demo_reference import reference_walk
 
 HEIGHTS = {child.name: child.height for child in (CP_CHILD, ABLE_BODIED_CHILD)}
 """[m]"""
-WALKS = {
-    "walk1": (1.0, Laboratory()),
-    "walk2": (0.95, Laboratory(heading=np.pi, noise=5e-4, seed=2)),
+WALKS: Mapping[str, Mapping[str, tuple[float, float]]] = {
+    "demo_cp_child": {"walk1": (1.20, 0.78), "walk2": (1.12, 0.84)},
+    "demo_able_bodied_child": {"walk1": (1.04, 1.10), "walk2": (0.96, 1.20)},
 }
-"""Name to the stride time as a share of the pattern's, and the laboratory."""
+"""Stride time [s] and speed [m/s]."""
+LABORATORIES = {"walk1": Laboratory(), "walk2": Laboratory(heading=np.pi, noise=5e-4, seed=2)}
 
 
 def write_demo_data(directory: Path) -> None:
@@ -44,7 +46,7 @@ def _write_child(folder: Path, pattern: GaitPattern) -> None:
     subject = with_markers(subject, parameters, pattern.tilt)
     standing = standing_coordinates(subject, pattern)
     write_c3d(folder / "static.c3d", static_recording(subject, standing, parameters))
-    for name, (pace, laboratory) in WALKS.items():
-        paced = replace(pattern, stride_time=pace * pattern.stride_time, speed=pattern.speed / pace**0.5)
-        walk = replace(reference_walk(reference_gait(paced)), subject=subject)
-        write_c3d(folder / f"{name}.c3d", walk_recording(name, walk, parameters, laboratory))
+    for name, (stride_time, speed) in WALKS[pattern.name].items():
+        gait = reference_gait(pattern.paced(stride_time, speed))
+        walk = replace(reference_walk(gait), subject=subject)
+        write_c3d(folder / f"{name}.c3d", walk_recording(name, walk, parameters, LABORATORIES[name]))

@@ -60,15 +60,15 @@ def basis(share: np.ndarray, derivative: int = 0) -> sp.csr_matrix:
     return sp.csr_matrix((table.data, (table.row, table.col % N_NODES)), shape=(len(share), N_NODES))
 
 
-def in_contact(pattern: GaitPattern, side: Side, part: str, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Whether heel or toe touches at shares of the right cycle (n,), and the stride that the contact belongs to.
+def in_contact(pattern: GaitPattern, side: Side, part: str, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Whether heel or toe touches at times (n,) [s] after a right strike, and the stride that the contact belongs to.
 
-    Both of shape (n,); the second is 0 for contacts that begin in the cycle, -1 for those begun before it.
+    Both of shape (n,); the second is 0 for contacts that begin in the side's first stride.
     """
     start, end = getattr(pattern.contacts[side], part)
-    own = share - pattern.delay(side)
-    stride = np.floor(own - start)
-    return own - start - stride < end - start, stride
+    own = time - pattern.delay(side) - start
+    stride = np.floor(own / pattern.stride_time + 1e-9)
+    return own - stride * pattern.stride_time < end - start - 1e-9, stride
 
 
 def flat_ankle(subject: SubjectModel, side: Side) -> float:
@@ -82,7 +82,7 @@ def flat_ankle(subject: SubjectModel, side: Side) -> float:
 def target_coordinates(subject: SubjectModel, pattern: GaitPattern, share: np.ndarray) -> np.ndarray:
     """Coordinates that the pattern asks for, without progression, at shares of the cycle (n,), shape (n, n_q)."""
     q = np.zeros((len(share), subject.n_q))
-    middle = pattern.contacts["right"].stance / 2
+    middle = pattern.contacts["right"].stance / pattern.stride_time / 2
     legs = sum(-segment.joint_offset[2] for segment in subject.segments[2:4])
     q[:, 1] = -pattern.sway * np.cos(2 * np.pi * (share - middle))
     q[:, 2] = 0.96 * legs + 0.04 * 1.5 + pattern.rise * np.cos(4 * np.pi * (share - middle))
@@ -90,7 +90,7 @@ def target_coordinates(subject: SubjectModel, pattern: GaitPattern, share: np.nd
     q[:, 4] = -pattern.curve("pelvis_obliquity", share)
     q[:, 5] = pattern.curve("pelvis_rotation", share)
     for side in SIDES:
-        s, first, own = SIGN[side], FIRST_JOINT[side], share - pattern.delay(side)
+        s, first, own = SIGN[side], FIRST_JOINT[side], share - pattern.delay(side) / pattern.stride_time
         q[:, first] = pattern.tilt - pattern.curve("hip_flexion", own)
         q[:, first + 1] = -s * pattern.curve("hip_adduction", own)
         q[:, first + 2] = -s * pattern.curve("hip_rotation", own)
@@ -120,6 +120,11 @@ class _Fit:
     def share(self) -> np.ndarray:
         """Samples, shares of the cycle, shape (N_SAMPLES,)."""
         return np.arange(N_SAMPLES) / N_SAMPLES
+
+    @cached_property
+    def time(self) -> np.ndarray:
+        """Samples [s], shape (N_SAMPLES,)."""
+        return self.share * self.pattern.stride_time
 
     @cached_property
     def target(self) -> np.ndarray:
@@ -152,22 +157,23 @@ class _Fit:
         """One full step."""
         n_q = self.subject.n_q
         E, E2 = basis(self.share), basis(self.share, 2) / self.pattern.stride_time**2
-        rows: list[sp.spmatrix] = []
+        rows: list[sp.csr_matrix] = []
         residuals: list[np.ndarray] = []
         wanted = E2 @ spsolve((E.T @ E).tocsc(), E.T @ self.target)
         for table, goal, spread in (
             (E, self.target, self.spread),
             (E2, wanted, np.repeat([ROOT_BENDING, BENDING], [3, n_q - 3])),
         ):
-            rows.append(sp.hstack([sp.kron(table, sp.diags(1 / spread)), sp.csr_matrix((N_SAMPLES * n_q, 8))]))
+            weighted = sp.kron(table, sp.diags(1 / spread))
+            rows.append(sp.csr_matrix(sp.hstack([weighted, sp.csr_matrix((N_SAMPLES * n_q, 8))])))
             residuals.append((((table @ coefficients) - goal) / spread).ravel())
         by_q, by_place, contact = self._contact_rows(E @ coefficients, places)
-        rows.append(sp.hstack([by_q @ sp.kron(E, sp.eye(n_q)), by_place]))
+        rows.append(sp.csr_matrix(sp.hstack([by_q @ sp.kron(E, sp.eye(n_q)), by_place])))
         residuals.append(contact)
-        rows.append(sp.hstack([sp.csr_matrix((4, coefficients.size)), self._lateral / WIDTH]))
+        rows.append(sp.csr_matrix(sp.hstack([sp.csr_matrix((4, coefficients.size)), self._lateral / WIDTH])))
         residuals.append((places[:, 1] - self._width) / WIDTH)
         J, r = sp.csr_matrix(sp.vstack(rows)), np.concatenate(residuals)
-        step = np.asarray(spsolve((J.T @ J + 1e-9 * sp.eye(J.shape[1])).tocsc(), -(J.T @ r)))
+        step = np.asarray(spsolve((J.T @ J + 1e-9 * sp.eye(coefficients.size + 8)).tocsc(), -(J.T @ r)))
         return coefficients + step[:-8].reshape(coefficients.shape), places + step[-8:].reshape(4, 2)
 
     @cached_property
@@ -191,7 +197,7 @@ class _Fit:
         own: list[tuple[int, int]] = []
         for k, name in enumerate(self.subject.contacts):
             side: Side = "right" if name.startswith("right") else "left"
-            touches, stride = in_contact(self.pattern, side, name.partition("_")[2], self.share)
+            touches, stride = in_contact(self.pattern, side, name.partition("_")[2], self.time)
             gone = positions[3 * k : 3 * k + 3].copy()
             gone[0] -= advance * stride + places[k, 0]
             gone[1] -= places[k, 1]
@@ -215,6 +221,7 @@ class _Fit:
         return sp.csr_matrix(sp.vstack(by_q)), sp.csr_matrix(sp.vstack(by_place)), np.concatenate(residuals)
 
     def _clearance(self, side: Side) -> np.ndarray:
-        stance, own = self.pattern.contacts[side].stance, (self.share - self.pattern.delay(side)) % 1.0
-        swing = np.clip((own - stance) / (1.0 - stance), 0.0, 1.0)
+        period, stance = self.pattern.stride_time, self.pattern.contacts[side].stance
+        own = (self.time - self.pattern.delay(side)) % period
+        swing = np.clip((own - stance) / (period - stance), 0.0, 1.0)
         return self.pattern.clearance * np.sin(np.pi * swing) ** 2

@@ -6,7 +6,7 @@ Identification and Treatment of Gait Problems in Cerebral Palsy).
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -23,17 +23,25 @@ Keys = tuple[tuple[float, float], ...]
 """Key points (share of the cycle, angle [deg])."""
 
 
+GRID = 0.02
+"""All changes of contact lie on multiples of this time [s], the interval of the estimator's grid."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class ContactTimes:
-    """When heel and toe touch the floor, in shares of the own side's cycle, which begins with the foot strike."""
+    """When heel and toe touch the floor [s] after the foot strike of their side."""
 
     heel: tuple[float, float]
     toe: tuple[float, float]
 
     @property
     def stance(self) -> float:
-        """Share of the cycle at foot off."""
+        """Time of foot off [s]."""
         return max(self.heel[1], self.toe[1])
+
+    def prolonged(self, time: float) -> "ContactTimes":
+        """Later ends of the contacts by a time [s]; with half a stride's change double support stays as it is."""
+        return ContactTimes(heel=(self.heel[0], self.heel[1] + time), toe=(self.toe[0], self.toe[1] + time))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +54,6 @@ class GaitPattern:
     """[s]"""
     speed: float
     """[m/s]"""
-    left_delay: float
-    """Left foot strike, share of the right side's cycle."""
     contacts: Mapping[Side, ContactTimes]
     curves: Mapping[str, Keys]
     """hip_flexion, hip_adduction, hip_rotation, knee_flexion, ankle_dorsiflexion of the own side; pelvis_tilt,
@@ -72,8 +78,14 @@ class GaitPattern:
         return np.radians(spline(x[0] + (phase - x[0]) % 1.0))
 
     def delay(self, side: Side) -> float:
-        """Foot strike of a side, share of the right side's cycle."""
-        return 0.0 if side == "right" else self.left_delay
+        """Foot strike of a side [s] after that of the right side."""
+        return 0.0 if side == "right" else self.stride_time / 2
+
+    def paced(self, stride_time: float, speed: float) -> "GaitPattern":
+        """The pattern with another stride time [s] and speed [m/s]; the time of double support stays."""
+        longer = (stride_time - self.stride_time) / 2
+        contacts = {side: times.prolonged(longer) for side, times in self.contacts.items()}
+        return replace(self, stride_time=stride_time, speed=speed, contacts=contacts)
 
 
 def demo_patterns() -> tuple[GaitPattern, GaitPattern]:
@@ -84,10 +96,9 @@ def demo_patterns() -> tuple[GaitPattern, GaitPattern]:
 ABLE_BODIED_CHILD = GaitPattern(
     name="demo_able_bodied_child",
     preset=thesis_able_bodied_child,
-    stride_time=1.05,
+    stride_time=1.04,
     speed=1.10,
-    left_delay=0.5,
-    contacts={side: ContactTimes(heel=(0.0, 0.40), toe=(0.08, 0.62)) for side in SIDES},
+    contacts={side: ContactTimes(heel=(0.0, 0.42), toe=(0.08, 0.64)) for side in SIDES},
     curves={
         "hip_flexion": ((0.0, 30.0), (0.12, 25.0), (0.3, 8.0), (0.5, -9.0), (0.62, 0.0), (0.85, 33.0)),
         "hip_adduction": ((0.0, 0.0), (0.2, 5.0), (0.45, 3.0), (0.65, -5.0), (0.85, -2.0)),
@@ -109,12 +120,11 @@ ABLE_BODIED_CHILD = GaitPattern(
 CP_CHILD = GaitPattern(
     name="demo_cp_child",
     preset=thesis_cp_child,
-    stride_time=1.22,
+    stride_time=1.20,
     speed=0.78,
-    left_delay=0.51,
     contacts={
-        "right": ContactTimes(heel=(0.06, 0.46), toe=(0.0, 0.65)),
-        "left": ContactTimes(heel=(0.05, 0.44), toe=(0.0, 0.64)),
+        "right": ContactTimes(heel=(0.08, 0.56), toe=(0.0, 0.80)),
+        "left": ContactTimes(heel=(0.06, 0.52), toe=(0.0, 0.80)),
     },
     curves={
         "hip_flexion": ((0.0, 46.0), (0.15, 41.0), (0.35, 26.0), (0.54, 14.0), (0.66, 22.0), (0.87, 47.0)),

@@ -24,9 +24,9 @@ class SimulatedWalk:
     q: np.ndarray
     """Coordinates at `RATE` [m, rad], shape (n, n_q)."""
     dense_q: np.ndarray
-    """Coordinates at `PLATE_RATE` [m, rad], shape (10 n, n_q)."""
+    """Coordinates at `PLATE_RATE` up to the last frame [m, rad], shape (10 n - 9, n_q)."""
     forces: Mapping[str, np.ndarray]
-    """Contact point to the force of the floor on it at `PLATE_RATE` [N], shape (10 n, 3)."""
+    """Contact point to the force of the floor on it at `PLATE_RATE` [N], shape (10 n - 9, 3)."""
     events: tuple[Event, ...]
 
 
@@ -126,7 +126,13 @@ def _plate(centre: np.ndarray, force: np.ndarray, moment: np.ndarray, R: np.ndar
     half = np.array([[1, -1, 0], [-1, -1, 0], [-1, 1, 0], [1, 1, 0]]) * [PLATE_LENGTH / 2, PLATE_WIDTH / 2, 0.0]
     return ForcePlate(
         corners=(centre + half) @ R.T,
-        force=FORCE_RESOLUTION * np.round(force @ R.T / FORCE_RESOLUTION),
-        moment=FORCE_RESOLUTION * np.round(moment @ R.T / FORCE_RESOLUTION),
+        force=_as_written(force @ R.T),
+        moment=_as_written(moment @ R.T),
         rate=PLATE_RATE,
     )
+
+
+def _as_written(samples: np.ndarray) -> np.ndarray:
+    """Rounded, and the last sample repeated up to the end of the last video frame, shape (10 n, 3)."""
+    held = np.repeat(samples[-1:], round(PLATE_RATE / RATE) - 1, axis=0)
+    return FORCE_RESOLUTION * np.round(np.concatenate([samples, held]) / FORCE_RESOLUTION)

@@ -6,41 +6,45 @@ import numpy as np
 from ..mocap.recording import Event, EventKind, Side
 from ..multibody.dynamics import inverse_dynamics, layout_of, parameter_vector
 from .demo_gait import ReferenceGait, in_contact
-from .demo_patterns import SIDES
+from .demo_patterns import SIDES, GaitPattern
 from .demo_recording import PLATE_RATE, RATE, SimulatedWalk
 
-BEFORE, AFTER = 0.75, 1.75
-"""First and last moment of a recording, in strides after the right foot strike at time 0."""
+BEFORE, AFTER = 0.24, 0.32
+"""A recording begins so long [s] before a left strike, and ends so long after the left strike two strides later."""
 ROLLING = 0.04  # [s], in which load moves from one contact point to the next
+
+
+def recording_time(pattern: GaitPattern, rate: float) -> np.ndarray:
+    """Times of samples at a rate [Hz], 0 at the right foot strike in the recording, shape (n,) [s]."""
+    first, last = -pattern.stride_time / 2 - BEFORE, 1.5 * pattern.stride_time + AFTER
+    return first + np.arange(round((last - first) * rate) + 1) / rate
 
 
 def reference_walk(gait: ReferenceGait) -> SimulatedWalk:
     """The gait over two and a half strides; forces are shared among the points that touch, not dynamically exact."""
-    period = gait.pattern.stride_time
-    n = int((BEFORE + AFTER) * period * RATE)
-    time, dense = (np.arange(count) / rate - BEFORE * period for count, rate in ((n, RATE), (10 * n, PLATE_RATE)))
+    time, dense = (recording_time(gait.pattern, rate) for rate in (RATE, PLATE_RATE))
     return SimulatedWalk(
         subject=gait.subject,
         q=gait.coordinates(time),
         dense_q=gait.coordinates(dense),
         forces=_shared_forces(gait, dense),
-        events=walk_events(gait, n / RATE),
+        events=walk_events(gait.pattern),
     )
 
 
-def walk_events(gait: ReferenceGait, duration: float) -> tuple[Event, ...]:
-    """Foot strikes and foot offs within `duration` [s] from the first frame, in time order."""
-    pattern, found = gait.pattern, list[Event]()
+def walk_events(pattern: GaitPattern) -> tuple[Event, ...]:
+    """Foot strikes and foot offs of a recording, times from its first frame, in time order."""
+    time, found = recording_time(pattern, RATE), list[Event]()
     for side in SIDES:
         kinds: tuple[tuple[EventKind, float], ...] = (
             ("foot_strike", 0.0),
             ("foot_off", pattern.contacts[side].stance),
         )
-        for kind, share in kinds:
-            for k in range(-3, 3):
-                time = pattern.stride_time * (BEFORE + pattern.delay(side) + share + k)
-                if 0.0 < time < duration - 1.0 / RATE:
-                    found.append(Event(side=side, kind=kind, time=time, source="file"))
+        for kind, after in kinds:
+            for k in range(-2, 3):
+                at = pattern.delay(side) + after + k * pattern.stride_time
+                if time[0] < at < time[-1]:
+                    found.append(Event(side=side, kind=kind, time=at - time[0], source="file"))
     return tuple(sorted(found, key=lambda event: event.time))
 
 
@@ -57,9 +61,8 @@ def _shared_forces(gait: ReferenceGait, time: np.ndarray) -> dict[str, np.ndarra
 def _share(gait: ReferenceGait, name: str, time: np.ndarray) -> np.ndarray:
     """Load of a contact point beside others, which grows and falls at the ends of its contact; shape (n,)."""
     side: Side = "right" if name.startswith("right") else "left"
-    period = gait.pattern.stride_time
     start, end = getattr(gait.pattern.contacts[side], name.partition("_")[2])
-    touches, stride = in_contact(gait.pattern, side, name.partition("_")[2], time / period)
-    since = time - period * (gait.pattern.delay(side) + start + stride)
-    left = period * (end - start) - since
+    touches, stride = in_contact(gait.pattern, side, name.partition("_")[2], time)
+    since = time - gait.pattern.delay(side) - start - stride * gait.pattern.stride_time
+    left = end - start - since
     return np.where(touches, np.clip(np.minimum(since, left) / ROLLING, 0.0, 1.0), 0.0) + 1e-9 * touches
