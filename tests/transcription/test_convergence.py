@@ -3,7 +3,7 @@
 import casadi as ca
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_bvp, solve_ivp
 
 from gaitlab.nlp.interior_point import InteriorPoint
 from gaitlab.ocp.mechanical import ContactStage, MechanicalModel
@@ -96,3 +96,22 @@ def test_motion_of_a_pendulum(damping):
     ).y[:, -1]
     errors = [np.abs(solve(model, duration, n, {0: first})[0][-1] - exact).max() for n in (6, 12, 24)]
     assert np.all(orders(errors) > 3.7), errors
+
+
+def test_swing_up_agrees_with_the_maximum_principle():
+    """Minimise the integral of u^2 / 2, u = q'' + sin q, from hanging to upright: u'' + cos(q) u = 0. Not convex."""
+    duration, n = 3.0, 40
+    t = np.linspace(0.0, duration, n + 1)
+    guess = np.stack([np.pi * t / duration, np.full(n + 1, np.pi / duration), 0 * t, 0 * t])
+    boundary_value = solve_bvp(
+        lambda t, y: np.stack([y[1], y[2] - np.sin(y[0]), y[3], -np.cos(y[0]) * y[2]]),
+        lambda a, b: np.array([a[0], a[1], b[0] - np.pi, b[1]]),
+        t, guess, tol=1e-8, max_nodes=5000,
+    )  # fmt: skip
+    assert boundary_value.success
+    model = one_coordinate(lambda q, v, a: a + ca.sin(q), 0)
+    states, cost = solve(model, duration, n, {0: [0.0, 0.0], n: [np.pi, 0.0]})
+    exact = boundary_value.sol(t)
+    np.testing.assert_allclose(states, exact[:2].T, atol=1e-4)
+    fine = np.linspace(0.0, duration, 2001)
+    assert cost == pytest.approx(np.trapezoid(0.5 * boundary_value.sol(fine)[2] ** 2, fine), rel=1e-4)
