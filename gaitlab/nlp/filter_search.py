@@ -32,10 +32,10 @@ class Filter:
 
     entries: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
 
-    def accepts(self, merit: Merit) -> bool:
-        """Whether no stored pair dominates the point."""
+    def accepts(self, merit: Merit, noise: float = 0.0) -> bool:
+        """Whether no stored pair dominates the point; barrier functions differ if by more than noise."""
         return all(
-            merit.violation <= (1.0 - GAMMA) * violation or merit.barrier <= barrier - GAMMA * violation
+            merit.violation <= (1.0 - GAMMA) * violation or merit.barrier - noise <= barrier - GAMMA * violation
             for violation, barrier in self.entries
         )
 
@@ -60,7 +60,7 @@ def backtrack(
         w, s, values = trial(alpha)
         if np.isfinite(values.f) and np.all(np.isfinite(values.g)) and np.all(np.isfinite(values.c)):
             new = Merit(values, s, start.mu)
-            if search_filter.accepts(new):
+            if search_filter.accepts(new, noise):
                 descends = slope < 0.0 and alpha * (-slope) ** 2.3 > start.violation**1.1
                 if descends and new.barrier - noise <= start.barrier + ETA * alpha * slope:
                     return alpha, w, s, values

@@ -22,6 +22,11 @@ LARGEST_DELTA = 1e8
 DEPENDENT = (0.0, 1e-9, 1e-8, 1e-7)
 """Regularisations delta_g tried where the KKT matrix is singular."""
 
+TINY_STEP = 10.0 * float(np.finfo(float).eps)
+"""Relative steps below this change nothing."""
+TINY_STEPS = 3
+"""The method stalls after so many of them in a row."""
+
 
 class Iterate(NamedTuple):
     """Primal and dual unknowns."""
@@ -91,6 +96,7 @@ class _Run:
         self.assembly = KKTAssembly(self.structure)
         self.mu = method.mu_initial
         self.delta, self.last_delta, self.delta_g = 0.0, 0.0, 0.0
+        self.tiny_steps = 0
         self.filter = Filter()
 
     def solve(self, start: SparseSolution | np.ndarray) -> SparseSolution:
@@ -108,7 +114,7 @@ class _Run:
             if error <= self.method.tol and self.mu <= self.method.mu_final:
                 return self._end(x, iteration, Status.SOLVED)
             moved = self._iterate(x, values, derivatives)
-            if moved is None:
+            if moved is None or self._stuck(x, moved[0]):
                 return self._end(x, iteration, Status.STALLED)
             x, values = moved
         return self._end(x, self.method.max_iter, Status.ITERATION_LIMIT)
@@ -121,6 +127,13 @@ class _Run:
             return Iterate(start.w, s, start.lam_g, np.clip(start.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s))
         s = np.maximum(self.problem.values(start).c, 1e-2)
         return Iterate(start.copy(), s, np.zeros(self.structure.n_g), self.mu / s)
+
+    def _stuck(self, old: Iterate, new: Iterate) -> bool:
+        """Whether steps in a row were below rounding in all unknowns (Wächter and Biegler, sec. 3.9)."""
+        pairs = zip(old, new, strict=True)
+        tiny = all(_norm((after - before) / (1.0 + np.abs(before))) <= TINY_STEP for before, after in pairs)
+        self.tiny_steps = self.tiny_steps + 1 if tiny else 0
+        return self.tiny_steps == TINY_STEPS
 
     def _lower_barrier(self, x: Iterate, values: Values, derivatives: Derivatives) -> None:
         method = self.method
@@ -158,6 +171,8 @@ class _Run:
             if moved is not None:
                 return moved
             self.delta = max(1e-4, 10.0 * max(self.delta, self.last_delta))
+            if self.delta >= LARGEST_DELTA:
+                break
         return self._restore(x, values, derivatives)
 
     def _direction(self, x: Iterate, values: Values, derivatives: Derivatives) -> Step | None:
@@ -176,11 +191,12 @@ class _Run:
     def _convexify(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
         """Smallest multiple of the identity, within a factor, that gives the right inertia."""
         delta = self._right_inertia(derivatives, sigma)
-        if delta >= LARGEST_DELTA and self.delta_g == 0.0:
+        if delta >= LARGEST_DELTA > self.delta and self.delta_g == 0.0:
             # Dependent equations: no delta_w helps, and from here on the multipliers are regularised instead.
             self.delta_g = DEPENDENT[2]
             delta = self._right_inertia(derivatives, sigma)
-        if delta > 0.0:
+        if delta > self.delta:
+            # What only the line search asked for is forgotten: it would grow from iteration to iteration.
             self.last_delta = delta
         return delta
 

@@ -155,6 +155,15 @@ def test_steps_stay_where_functions_are_finite():
     np.testing.assert_allclose(solution.w, 1.0, atol=1e-7)
 
 
+def test_tolerances_below_rounding_do_no_harm():
+    """The filter compares up to rounding, and regularisations do not grow from iteration to iteration."""
+    start, expected = KNOWN[hock_schittkowski_71]
+    solution = InteriorPoint(tol=1e-30, max_iter=60).solve(program(hock_schittkowski_71, 4), np.array(start))
+    assert solution.status in {Status.STALLED, Status.ITERATION_LIMIT}
+    assert solution.is_optimal(1e-7)
+    np.testing.assert_allclose(solution.w, expected, atol=1e-6)
+
+
 def test_progress_may_cancel():
     calls = []
 

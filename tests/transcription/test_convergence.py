@@ -62,8 +62,8 @@ def solve(model, duration, n, given):
         acceleration_weights=np.zeros(1),
     )
     problem = MechanicalProblem(MechanicalStructure(layout, point_functions(model)), data)
-    solution = InteriorPoint(tol=1e-11).solve(problem, states.ravel())
-    assert solution.is_optimal(1e-10), solution
+    solution = InteriorPoint(tol=1e-10).solve(problem, states.ravel())
+    assert solution.is_optimal(1e-9), solution
     return problem.states(solution.w), solution.f
 
 
