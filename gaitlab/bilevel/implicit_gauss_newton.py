@@ -1,8 +1,9 @@
 """Gauss-Newton on the weights, with the lower level solved at every step.
 
-The lower level's solution is differentiated by the implicit function theorem; steps are damped (Levenberg-Marquardt;
-Nocedal and Wright 2006, sec. 10.3) and stay on the simplex by solving the small subproblem as nonnegative least
-squares (Lawson and Hanson 1974, ch. 23).
+The lower level's solution is differentiated by the implicit function theorem. The misfit of real data is not small,
+so the second-order part of the loss is learnt from the changes of the Jacobian (Dennis, Gay and Welsch, ACM TOMS 7,
+1981). Steps are damped (Levenberg-Marquardt; Nocedal and Wright 2006, sec. 10.3) and stay on the simplex by solving
+the small subproblem as nonnegative least squares (Lawson and Hanson 1974, ch. 23).
 """
 
 from collections.abc import Callable
@@ -24,9 +25,9 @@ Progress = Callable[[int, float], None]
 class ImplicitGaussNewton:
     """Settings of the method."""
 
-    tol_step: float = 1e-6
+    tol_step: float = 1e-5
     """Converged when no weight moves by more."""
-    tol_decrease: float = 1e-9
+    tol_decrease: float = 1e-7
     """Converged when the loss falls by less, relatively."""
     max_iter: int = 40
     damping: float = 1e-3
@@ -63,10 +64,12 @@ class _Search:
     state: _State
     progress: Progress | None
     damping: float = field(init=False)
+    second_order: np.ndarray = field(init=False)
     lower_iterations: int = 0
 
     def __post_init__(self) -> None:
         self.damping = self.method.damping
+        self.second_order = np.zeros((self.lower.n_theta, self.lower.n_theta))
 
     def run(self) -> WeightEstimate:
         reason, iteration = "iteration limit reached", 0
@@ -92,20 +95,40 @@ class _Search:
             trial = _State(theta, response)
             if response.solution.status is Status.SOLVED and trial.loss < self.state.loss:
                 decrease = (self.state.loss - trial.loss) / self.state.loss
+                self._learn(jacobian, trial, step)
                 self.state, self.damping = trial, max(self.damping / 5.0, 1e-9)
                 return "converged: the fit does not improve" if decrease <= self.method.tol_decrease else None
             self.damping *= 8.0
         return "converged: no smaller step improves the fit"
 
     def _subproblem(self, jacobian: np.ndarray) -> np.ndarray:
-        """Minimise |r + J (t - theta)|^2 + damping |D (t - theta)|^2 over the simplex."""
-        theta, residual = self.state.theta, self.state.response.residual
-        scale = np.sqrt(self.damping * (np.sum(jacobian**2, axis=0) + 1e-12))
-        anchor = 1e4 * float(np.max(np.linalg.norm(jacobian, axis=0), initial=1e-6))
-        A = np.vstack([jacobian, np.diag(scale), np.full((1, len(theta)), anchor)])
-        b = np.concatenate([jacobian @ theta - residual, scale * theta, [anchor]])
-        t, _ = nnls(A, b)
+        """Minimise the damped quadratic model of the loss over the simplex."""
+        theta, gradient = self.state.theta, jacobian.T @ self.state.response.residual
+        gauss_newton = jacobian.T @ jacobian
+        scale = np.diag(np.diag(gauss_newton) + 1e-12 * np.trace(gauss_newton))
+        values, vectors = np.linalg.eigh(gauss_newton + self.second_order + self.damping * scale)
+        # A least-squares form needs a positive definite model.
+        values = np.maximum(values, 1e-10 * values[-1])
+        root = np.sqrt(values)[:, None] * vectors.T
+        anchor = 1e4 * float(root.max())
+        b = root @ theta - (vectors.T @ gradient) / np.sqrt(values)
+        t, _ = nnls(np.vstack([root, np.full((1, len(theta)), anchor)]), np.append(b, anchor))
         return t / t.sum()
+
+    def _learn(self, jacobian: np.ndarray, trial: _State, step: np.ndarray) -> None:
+        """Update the second-order part so that it maps the step to the change of J at the new residual."""
+        new, residual = trial.response.jacobian(), trial.response.residual
+        y = new.T @ residual - jacobian.T @ self.state.response.residual
+        change = (new - jacobian).T @ residual
+        curvature = float(y @ step)
+        if curvature <= 1e-12 * float(np.linalg.norm(y) * np.linalg.norm(step)):
+            return
+        expected = float(step @ self.second_order @ step)
+        if expected != 0.0:
+            self.second_order *= min(1.0, abs(float(step @ change) / expected))
+        gap = change - self.second_order @ step
+        self.second_order += (np.outer(gap, y) + np.outer(y, gap)) / curvature
+        self.second_order -= float(gap @ step) / curvature**2 * np.outer(y, y)
 
     def _estimate(self, reason: str, iterations: int) -> WeightEstimate:
         response = self.state.response

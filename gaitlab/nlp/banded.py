@@ -5,7 +5,7 @@ constraints of a stage are independent, in contrast to Riccati recursions, and i
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.linalg import lapack
@@ -33,6 +33,12 @@ class BandedLU:
         k = self.bandwidth
         x, _ = lapack.dgbtrs(self.lu, k, k, ordered, self.pivots)
         return np.asarray(x)[self.order]
+
+
+@lru_cache(maxsize=16)
+def kkt_assembly(structure: SparseStructure) -> "KKTAssembly":
+    """The assembly of a structure; a structure is the same object in all problems that share it."""
+    return KKTAssembly(structure)
 
 
 @dataclass(frozen=True)
@@ -67,10 +73,9 @@ class KKTAssembly:
     def _pattern(self) -> Pattern:
         s = self.structure
         first, second, _ = self._pairs
-        diagonal = np.arange(s.n_w + s.n_g)
         g_rows = s.n_w + s.jac_g.rows
-        rows = [s.hess.rows, s.jac_c.cols[first], g_rows, s.jac_g.cols, diagonal]
-        cols = [s.hess.cols, s.jac_c.cols[second], s.jac_g.cols, g_rows, diagonal]
+        rows = [s.hess.rows, s.jac_c.cols[first], g_rows, s.jac_g.cols]
+        cols = [s.hess.cols, s.jac_c.cols[second], s.jac_g.cols, g_rows]
         return Pattern(self.position[np.concatenate(rows)], self.position[np.concatenate(cols)])
 
     @cached_property
@@ -85,18 +90,15 @@ class KKTAssembly:
         rows, cols = self._pattern
         return cols * (3 * k + 1) + 2 * k + rows - cols
 
-    def band(
-        self, derivatives: tuple[np.ndarray, np.ndarray, np.ndarray], sigma: np.ndarray, delta: tuple[float, float]
-    ) -> np.ndarray:
+    def band(self, derivatives: tuple[np.ndarray, np.ndarray, np.ndarray], sigma: np.ndarray) -> np.ndarray:
         """K in LAPACK's band storage, one row per column of K, shape (n, 3 bandwidth + 1).
 
-        From entries (hess, jac_g, jac_c) of shapes (nnz,), barrier weights sigma (n_c,) and (delta_w, delta_g).
+        From entries (hess, jac_g, jac_c) of shapes (nnz,) and barrier weights sigma (n_c,), without regularisation.
         """
         hess, jac_g, jac_c = derivatives
         s, k = self.structure, self.bandwidth
         first, second, row = self._pairs
-        regularisation = np.concatenate([np.full(s.n_w, delta[0]), np.full(s.n_g, -delta[1])])
-        entries = np.concatenate([hess, jac_c[first] * jac_c[second] * sigma[row], jac_g, jac_g, regularisation])
+        entries = np.concatenate([hess, jac_c[first] * jac_c[second] * sigma[row], jac_g, jac_g])
         n = s.n_w + s.n_g
         return np.bincount(self._flat, weights=entries, minlength=n * (3 * k + 1)).reshape(n, 3 * k + 1)
 
@@ -115,29 +117,51 @@ class KKTAssembly:
         S_k = D_k - B_k S_{k-1}^{-1} B_k', which LAPACK's Bunch-Kaufman factors tell. The minimiser's K has as many
         negative eigenvalues as there are equality constraints.
         """
-        ends = np.cumsum(self.structure.blocks)
-        count, previous = 0, None
-        for start, end in zip(ends - self.structure.blocks, ends, strict=True):
-            schur = self._block(band, (start, end), (start, end)).copy(order="F")
-            if previous is not None:
-                below = self._block(band, (start, end), previous[0])
-                used = np.flatnonzero(np.any(below != 0.0, axis=0))
-                unit = np.zeros((below.shape[1], len(used)), order="F")
+        flat = band.ravel()
+        count, factor, pivots = 0, np.zeros((0, 0)), np.zeros(0)
+        for diagonal, below, used in self._blocks:
+            schur = flat[diagonal]
+            if len(used):
+                unit = np.zeros((len(factor), len(used)), order="F")
                 unit[used, np.arange(len(used))] = 1.0
-                inverse, _ = lapack.dsytrs(previous[1], previous[2], unit, lower=True)
-                schur -= below[:, used] @ inverse[used] @ below[:, used].T
-            factor, pivots, _ = lapack.dsytrf(schur, lower=True)
+                inverse, _ = lapack.dsytrs(factor, pivots, unit, lower=True)
+                coupling = flat[below]
+                schur -= coupling @ inverse[used] @ coupling.T
+            # A symmetric matrix is its own transpose: the view is what Fortran wants.
+            factor, pivots, _ = lapack.dsytrf(schur.T, lower=True, overwrite_a=True)
             single = pivots > 0
             count += int(np.sum(np.diag(factor)[single] < 0.0)) + int(np.sum(~single)) // 2
-            previous = ((start, end), factor, pivots)
         return count
 
-    def _block(self, band: np.ndarray, rows: tuple[int, int], cols: tuple[int, int]) -> np.ndarray:
-        """Dense view of the rows and columns [start, end) of K; entries outside the band are zero."""
+    @cached_property
+    def _blocks(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        # Per block: places of its entries, of its coupling to the block before, and the columns of that in use.
+        ends = np.cumsum(self.structure.blocks)
+        starts = ends - self.structure.blocks
+        lower = self._pattern.rows >= self._pattern.cols
+        rows, cols = self._pattern.rows[lower], self._pattern.cols[lower]
+        blocks: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        for k, (start, end) in enumerate(zip(starts, ends, strict=True)):
+            outside = cols[(rows >= start) & (rows < end) & (cols < start)]
+            used = np.unique(outside)
+            own = np.arange(start, end)
+            before = int(starts[k - 1]) if k else 0
+            blocks.append((self._places(own, own), self._places(own, used), used - before))
+        return blocks
+
+    def _places(self, rows: np.ndarray, cols: np.ndarray) -> np.ndarray:
+        """Places in the band's memory of entries (rows x cols); those outside it point to a zero of the fill-in."""
         k = self.bandwidth
-        i, j = np.arange(*rows)[:, None], np.arange(*cols)[None, :]
-        inside = np.abs(i - j) <= k
-        return np.where(inside, band[j, np.clip(2 * k + i - j, 0, 3 * k)], 0.0)
+        i, j = rows[:, None], cols[None, :]
+        return np.where(np.abs(i - j) <= k, j * (3 * k + 1) + np.clip(2 * k + i - j, 0, 3 * k), 0)
+
+    def shifted(self, band: np.ndarray, delta: tuple[float, float]) -> np.ndarray:
+        """Copy of K, shape (n, 3 bandwidth + 1), plus delta_w on the variables' and less delta_g on the rows' diagonal."""
+        s = self.structure
+        moved = band.copy()
+        shift = np.concatenate([np.full(s.n_w, delta[0]), np.full(s.n_g, -delta[1])])
+        moved[self.position, 2 * self.bandwidth] += shift
+        return moved
 
     def multiply(self, pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_rows: int) -> np.ndarray:
         """Product of a sparse matrix given by its entries with x, shape (n_cols,); result of shape (n_rows,)."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .banded import KKTAssembly
+from .banded import kkt_assembly
 from .filter_search import Filter, Merit, backtrack
 from .sparse_problem import Derivatives, SparseProblem, Values
 from .sparse_solution import SparseSolution, Status, certify
@@ -93,7 +93,7 @@ class _Run:
     ) -> None:
         self.method, self.problem, self.progress = method, problem, progress
         self.structure = problem.structure
-        self.assembly = KKTAssembly(self.structure)
+        self.assembly = kkt_assembly(self.structure)
         self.mu = method.mu_initial
         self.delta, self.last_delta, self.delta_g = 0.0, 0.0, 0.0
         self.tiny_steps = 0
@@ -178,33 +178,32 @@ class _Run:
     def _direction(self, x: Iterate, values: Values, derivatives: Derivatives) -> Step | None:
         """Newton direction of a problem made convex on the null space of the constraints, or None."""
         sigma = x.lam_c / x.s
-        delta = self._convexify(derivatives, sigma)
-        entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
+        band = self.assembly.band((derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma)
+        delta = self._convexify(band)
         for delta_g in DEPENDENT[DEPENDENT.index(self.delta_g) :]:
-            factors = self.assembly.factorise(self.assembly.band(entries, sigma, (delta, delta_g)))
+            factors = self.assembly.factorise(self.assembly.shifted(band, (delta, delta_g)))
             if factors is not None:
                 step = self._solve_newton(x, values, derivatives, factors.solve)
                 if np.all(np.isfinite(step.w)):
                     return step
         return None
 
-    def _convexify(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
+    def _convexify(self, band: np.ndarray) -> float:
         """Smallest multiple of the identity, within a factor, that gives the right inertia."""
-        delta = self._right_inertia(derivatives, sigma)
+        delta = self._right_inertia(band)
         if delta >= LARGEST_DELTA > self.delta and self.delta_g == 0.0:
             # Dependent equations: no delta_w helps, and from here on the multipliers are regularised instead.
             self.delta_g = DEPENDENT[2]
-            delta = self._right_inertia(derivatives, sigma)
+            delta = self._right_inertia(band)
         if delta > self.delta:
             # What only the line search asked for is forgotten: it would grow from iteration to iteration.
             self.last_delta = delta
         return delta
 
-    def _right_inertia(self, derivatives: Derivatives, sigma: np.ndarray) -> float:
+    def _right_inertia(self, band: np.ndarray) -> float:
         delta, n_g = self.delta, self.structure.n_g
-        entries = (derivatives.hess, derivatives.jac_g, derivatives.jac_c)
         while delta < LARGEST_DELTA:
-            if self.assembly.negative_eigenvalues(self.assembly.band(entries, sigma, (delta, self.delta_g))) == n_g:
+            if self.assembly.negative_eigenvalues(self.assembly.shifted(band, (delta, self.delta_g))) == n_g:
                 break
             delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
         return delta
@@ -250,7 +249,8 @@ class _Run:
             return None
         plain = derivatives._replace(grad=np.zeros_like(x.w), hess=np.zeros_like(derivatives.hess))
         calm = x._replace(lam_g=np.zeros_like(x.lam_g))
-        band = self.assembly.band((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s, (1.0, 1e-10))
+        band = self.assembly.band((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s)
+        band = self.assembly.shifted(band, (1.0, 1e-10))
         factors = self.assembly.factorise(band)
         if factors is None:
             return None

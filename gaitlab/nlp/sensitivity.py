@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .banded import BandedLU, KKTAssembly
+from .banded import BandedLU, kkt_assembly
 from .sparse_problem import Derivatives, SparseProblem
 from .sparse_solution import SparseSolution
 
@@ -19,11 +19,11 @@ class Sensitivity:
 
     def __init__(self, problem: SparseProblem, solution: SparseSolution) -> None:
         self.solution, self.structure = solution, problem.structure
-        self.assembly = KKTAssembly(self.structure)
+        self.assembly = kkt_assembly(self.structure)
         self.sigma = solution.lam_c / solution.s
         self.derivatives: Derivatives = problem.derivatives(solution.w, solution.lam_g, solution.lam_c)
         self._band = self.assembly.band(
-            (self.derivatives.hess, self.derivatives.jac_g, self.derivatives.jac_c), self.sigma, (0.0, 0.0)
+            (self.derivatives.hess, self.derivatives.jac_g, self.derivatives.jac_c), self.sigma
         )
 
     def is_minimum(self) -> bool:

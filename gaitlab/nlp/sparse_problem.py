@@ -38,7 +38,7 @@ class Derivatives(NamedTuple):
     """Entries of the Hessian of f + lam_g' g - lam_c' c, both triangles, shape (nnz_h,)."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SparseStructure:
     """Sizes, sparsity and an order of the unknowns in which the KKT matrix is banded."""
 

@@ -1,15 +1,31 @@
 """From measured coordinates to the weights of the criteria: the seam between gait analysis and optimal control."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
 
+import msgspec
 import numpy as np
 
-from ..clinical.document import WeightsEntry
-from ..errors import ProblemError
+from ..bilevel.result import rms
+from ..clinical.document import StrideWeights, WeightsEntry
+from ..errors import InvalidRecording, NotConverged
+from ..mocap.cycles import Cycle, full_strides
 from ..mocap.recording import Event, Recording
 from ..multibody.subject import SubjectModel
-from .progress import Progress
+from ..walking.contact_phases import contact_phases, foot_directions
+from ..walking.contact_schedule import contact_stages
+from ..walking.criteria import by_name
+from ..walking.explanation import Explanation, ExplanationSettings, explain
+from ..walking.identification import IdentificationSettings
+from ..walking.tracking import MeasuredStride, measured_stride
+from .optimal_arrays import optimal_arrays
+from .pooling import pool_strides
+from .progress import Progress, Step
+from .weights_entry import stride_entry, weights_entry
+
+MOST_STRIDES = 2
+"""Strides of one walk that are explained: each costs seconds, and overlapping strides say the same twice."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +54,109 @@ class TrialWeights:
     warnings: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, kw_only=True)
+class ExplainedStride:
+    """One stride with its explanation and the time that it took."""
+
+    cycle: Cycle
+    found: Explanation
+    seconds: float
+
+
 def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeights:
-    """Tracking, continuation and weights of one walk."""
-    del progress
-    raise ProblemError(f"{request.recording.name}: the weights cannot be computed yet; ask for --no-weights")
+    """Tracking, continuation and weights of one walk: the most central stride, and one more where there is one.
+
+    Raises:
+        InvalidRecording: no stride of the walk can be used.
+        NotConverged: no stride was solved.
+        NotFound: a criterion does not exist.
+    """
+    for name in request.criteria:
+        by_name(name)
+    strides, skipped = usable_strides(request)
+    explained, failed = _explain_all(request, strides, progress)
+    main = explained[0]
+    entries = [stride_entry(request.recording.name, s.cycle, s.found, s.seconds) for s in explained]
+    entry = weights_entry(main.found, main.seconds)
+    entry = replace_strides(entry, entries, _unseen(explained))
+    recording = request.recording
+    arrays = optimal_arrays(main.found, recording.n_frames, recording.rate, request.heading)
+    return TrialWeights(entry=entry, arrays=arrays, warnings=(*skipped, *failed))
+
+
+def replace_strides(entry: WeightsEntry, strides: list[StrideWeights], unseen: dict[str, float]) -> WeightsEntry:
+    """The entry with all strides, their pooled weights, and the fit on strides that were not used."""
+    fit = msgspec.structs.replace(entry.fit, unseen_stride_rms_rad=unseen)
+    return msgspec.structs.replace(entry, fit=fit, strides=strides, pooled=pool_strides(strides))
+
+
+def usable_strides(request: WeightsRequest) -> tuple[list[tuple[Cycle, MeasuredStride]], tuple[str, ...]]:
+    """Strides with known coordinates and a contact schedule, most central first, and why others were left out."""
+    recording = request.recording
+    phases = contact_phases(request.subject, request.q, recording.rate, request.events)
+    directions = foot_directions(request.subject, request.q, phases)
+    middle = 0.5 * (recording.n_frames - 1) / recording.rate
+    candidates = sorted(
+        full_strides(recording.name, request.events), key=lambda c: abs(0.5 * (c.start + c.end) - middle)
+    )
+    usable: list[tuple[Cycle, MeasuredStride]] = []
+    skipped: list[str] = []
+    for cycle in candidates:
+        try:
+            stages = contact_stages(phases, recording.rate, (cycle.start, cycle.end), directions=directions)
+            start = round(cycle.start * recording.rate) / recording.rate
+            usable.append((cycle, measured_stride(request.subject, stages, start, request.q, recording.rate)))
+        except InvalidRecording as error:
+            skipped.append(f"{cycle.side} stride at {cycle.start:.2f} s not used for the weights: {error}")
+    if not usable:
+        raise InvalidRecording(f"{recording.name}: no stride can be used for the weights. " + " ".join(skipped))
+    return _apart(usable), tuple(skipped)
+
+
+def _apart(strides: list[tuple[Cycle, MeasuredStride]]) -> list[tuple[Cycle, MeasuredStride]]:
+    """The first stride, then the others, those that overlap it least first."""
+    first = strides[0][0]
+
+    def overlap(item: tuple[Cycle, MeasuredStride]) -> float:
+        return max(0.0, min(first.end, item[0].end) - max(first.start, item[0].start))
+
+    return [strides[0], *sorted(strides[1:], key=overlap)]
+
+
+def _explain_all(
+    request: WeightsRequest, strides: Sequence[tuple[Cycle, MeasuredStride]], progress: Progress
+) -> tuple[list[ExplainedStride], tuple[str, ...]]:
+    settings = ExplanationSettings(identification=IdentificationSettings(criteria=request.criteria))
+    explained: list[ExplainedStride] = []
+    failed: list[str] = []
+    for cycle, stride in strides:
+        if len(explained) == MOST_STRIDES:
+            break
+        where = f"{cycle.side} stride at {cycle.start:.2f} s"
+
+        def report(stage: str, iteration: int, residual: float, where: str = where) -> None:
+            words = f"{stage}, {where}"
+            progress(Step(stage=words, trial=request.recording.name, iteration=iteration, residual=residual))
+
+        begin = perf_counter()
+        try:
+            # The first stride carries the comparison with other weights; the others are there for the spread.
+            found = explain(stride, replace(settings, single_criteria=not explained), report)
+        except NotConverged as error:
+            failed.append(f"{where}: {error}")
+            continue
+        explained.append(ExplainedStride(cycle=cycle, found=found, seconds=perf_counter() - begin))
+    if not explained:
+        raise NotConverged(f"{request.recording.name}: no stride could be explained. " + " ".join(failed))
+    return explained, tuple(failed)
+
+
+def _unseen(explained: Sequence[ExplainedStride]) -> dict[str, float]:
+    """Fit of the first stride's weights on the other strides."""
+    theta = explained[0].found.estimate.theta
+    fits: dict[str, float] = {}
+    for other in explained[1:]:
+        found = other.found
+        response = found.level.respond(theta, found.optimum.predict(theta - found.estimate.theta))
+        fits[f"{other.cycle.side} {other.cycle.start:.2f} s"] = rms(response.residual)
+    return fits

@@ -69,7 +69,7 @@ def chain(request):
 @pytest.mark.parametrize("delta", [(0.0, 0.0), (2.0, 1e-2)])
 def test_solve(chain, delta):
     assembly = KKTAssembly(chain.structure)
-    factors = assembly.factorise(assembly.band(chain.entries(), chain.sigma, delta))
+    factors = assembly.factorise(assembly.shifted(assembly.band(chain.entries(), chain.sigma), delta))
     dense = chain.dense(delta)
     for shape in [(len(dense),), (len(dense), 3)]:
         rhs = chain.generator.normal(size=shape)
@@ -80,7 +80,9 @@ def test_solve(chain, delta):
 def test_negative_eigenvalues(chain, delta):
     assembly = KKTAssembly(chain.structure)
     expected = int(np.sum(np.linalg.eigvalsh(chain.dense(delta)) < 0.0))
-    assert assembly.negative_eigenvalues(assembly.band(chain.entries(), chain.sigma, delta)) == expected
+    assert (
+        assembly.negative_eigenvalues(assembly.shifted(assembly.band(chain.entries(), chain.sigma), delta)) == expected
+    )
     if delta[0] == 100.0:
         assert expected == chain.structure.n_g
 
@@ -92,7 +94,7 @@ def test_the_order_along_time_makes_the_band_narrow(chain):
 @pytest.mark.parametrize("value", [0.0, np.nan, np.inf])
 def test_singular_and_infinite_matrices_have_no_factors(chain, value):
     assembly = KKTAssembly(chain.structure)
-    band = assembly.band((0 * chain.hess, 0 * chain.jac_g, 0 * chain.jac_c), chain.sigma, (0.0, 0.0))
+    band = assembly.band((0 * chain.hess, 0 * chain.jac_g, 0 * chain.jac_c), chain.sigma)
     assert assembly.factorise(band + value) is None
 
 

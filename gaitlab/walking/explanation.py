@@ -1,0 +1,128 @@
+"""Why this stride looks as it does: tracking, the pure optimal control problem, and the weights that fit best."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..bilevel.implicit_gauss_newton import ImplicitGaussNewton
+from ..bilevel.result import WeightEstimate, rms
+from ..errors import NotConverged
+from ..nlp.sparse_solution import Status
+from .identification import IdentificationSettings, WalkLevel, WalkOptimum
+from .tracking import MeasuredStride, TrackedWalk, TrackingSettings, track
+
+CERTIFICATE = 1e-6
+"""Largest first-order residual of an accepted solution."""
+
+Report = Callable[[str, int, float], None]
+"""Called with the stage in words, the iteration and its residual; cancels by raising `errors.Cancelled`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExplanationSettings:
+    """Settings of the three steps."""
+
+    tracking: TrackingSettings = field(default_factory=TrackingSettings)
+    identification: IdentificationSettings = field(default_factory=IdentificationSettings)
+    method: ImplicitGaussNewton = field(default_factory=ImplicitGaussNewton)
+    single_criteria: bool = True
+    """Whether to solve for each criterion alone: what the weights must beat, and further starts of the search."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Explanation:
+    """A stride, its optimal counterpart, and what other weights would have given."""
+
+    tracked: TrackedWalk
+    level: WalkLevel
+    optimum: WalkOptimum
+    estimate: WeightEstimate
+    equal_rms: float | None
+    """Fit of equal weights; None where that problem was not solved."""
+    single_rms: Mapping[str, float | None]
+    """Fit of each criterion alone; empty where it was not asked for."""
+
+    @property
+    def is_certified(self) -> bool:
+        """First-order conditions to 1e-6, a minimum to second order, and a converged upper level."""
+        solution = self.optimum.solution
+        return solution.is_optimal(CERTIFICATE) and self.optimum.sensitivity.is_minimum() and self.estimate.converged
+
+
+def explain(
+    stride: MeasuredStride, settings: ExplanationSettings | None = None, report: Report | None = None
+) -> Explanation:
+    """Track a stride and find the weights of its criteria.
+
+    Raises:
+        NotConverged: the tracking problem or the optimal control problem with equal weights was not solved.
+    """
+    settings = settings or ExplanationSettings()
+    tracked = track(stride, settings.tracking, _part(report, "tracking"))
+    _require(tracked.solution.status, "tracking the measured stride", tracked.solution.iterations)
+    return explain_tracked(tracked, settings, report)
+
+
+def explain_tracked(
+    tracked: TrackedWalk, settings: ExplanationSettings | None = None, report: Report | None = None
+) -> Explanation:
+    """Find the weights of the criteria of a tracked stride. Raises `errors.NotConverged` as `explain` does."""
+    settings = settings or ExplanationSettings()
+    level = WalkLevel(tracked, settings.identification)
+    theta = np.full(level.n_theta, 1.0 / level.n_theta)
+    equal = level.from_tracking(theta, _part(report, "continuation"))
+    _require(equal.solution.status, "the optimal control problem without tracking", equal.solution.iterations)
+    singles = single_criteria(level, equal, report) if settings.single_criteria else []
+    starts = sorted(
+        [(theta, equal), *((vertex, r) for vertex, r in singles if _solved(r))],
+        key=lambda start: rms(start[1].residual),
+    )
+    estimate = settings.method.solve(level, *starts[0], _part(report, "weights"))
+    return Explanation(
+        tracked=tracked,
+        level=level,
+        optimum=WalkOptimum(level, level.problem(estimate.theta), estimate.response.solution),
+        estimate=estimate,
+        equal_rms=rms(equal.residual),
+        single_rms={
+            name: rms(r.residual) if _solved(r) else None
+            for name, (_, r) in zip(level.settings.criteria, singles, strict=False)
+        },
+    )
+
+
+def single_criteria(
+    level: WalkLevel, start: WalkOptimum, report: Report | None = None
+) -> list[tuple[np.ndarray, WalkOptimum]]:
+    """Optimal walks of each criterion alone, followed from a solved one: weights, shape (n_theta,), and response."""
+    tell = _part(report, "single criteria")
+    found: list[tuple[np.ndarray, WalkOptimum]] = []
+    centre = np.full(level.n_theta, 1.0 / level.n_theta)
+    for i in range(level.n_theta):
+        vertex = np.eye(level.n_theta)[i]
+        response = start
+        for part in (0.6, 1.0):
+            response = level.respond_from_afar((1.0 - part) * centre + part * vertex, response.solution)
+        if tell is not None:
+            tell(i, rms(response.residual))
+        found.append((vertex, response))
+    return found
+
+
+def _solved(response: WalkOptimum) -> bool:
+    return response.solution.status is Status.SOLVED
+
+
+def _part(report: Report | None, stage: str) -> Callable[[int, float], None] | None:
+    if report is None:
+        return None
+    return lambda iteration, residual: report(stage, iteration, residual)
+
+
+def _require(status: Status, what: str, iterations: int) -> None:
+    if status is not Status.SOLVED:
+        raise NotConverged(
+            f"{what} did not converge: {status.value} after {iterations} iterations; "
+            "check the events and the marker gaps of this stride, or choose another walk"
+        )

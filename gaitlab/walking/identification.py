@@ -1,0 +1,200 @@
+"""The walk as a pure optimal control problem, and the weights that explain it.
+
+The lower level sees the durations and contacts of the stages, the state of the body at the boundaries of short arcs
+(every change between stance and swing, and in between so that no arc is longer than `longest_arc`), and the weighted
+criteria. It does not see the measured motion inside the arcs: there is no tracking term. Two floors keep it well
+posed: squared torque, and squared acceleration of the angles. Without the second one, segments with little inertia
+(a swinging foot, the rotation of a stretched leg about its axis) may turn freely at almost no torque.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..multibody.dynamics import layout_of
+from ..nlp.interior_point import InteriorPoint
+from ..nlp.sensitivity import Sensitivity
+from ..nlp.sparse_solution import SparseSolution, Status
+from ..ocp.mechanical import ContactStage
+from ..transcription.contact_rank import without_redundant_contacts
+from ..transcription.mechanical_layout import Boundary, MechanicalLayout
+from ..transcription.mechanical_problem import MechanicalProblem, MechanicalStructure
+from .criteria import ALL, THESIS, by_name
+from .model import ROOT, walking_functions
+from .tracking import N_FORCES, TrackedWalk
+
+HEIGHTS = ((2, 5), (8, 11))
+"""Force components of the right and left foot that tell whether it stands."""
+
+NEARBY = 12
+"""Iterations granted to a start that should be close; a good prediction needs two to five."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class IdentificationSettings:
+    """How the lower level is posed."""
+
+    criteria: tuple[str, ...] = THESIS
+    longest_arc: float = 0.12
+    """Longest time [s] between given states."""
+    torque_floor: float = 0.01
+    """Weight of the squared torques beside criteria that sum to one."""
+    smoothness_floor: float = 0.05
+    """Weight of the squared angular accelerations beside criteria that sum to one."""
+    force_weight: float = 1e-4
+    solver: InteriorPoint = field(
+        default_factory=lambda: InteriorPoint(tol=1e-8, mu_initial=1e-7, mu_final=1e-7, max_iter=150)
+    )
+    continuation: tuple[float, ...] = (0.1, 0.0)
+    """Factors on the tracking weights on the way from tracking to the pure optimal control problem."""
+
+
+class WalkOptimum:
+    """A `bilevel.problem.Response`: the optimal walk for one set of weights."""
+
+    def __init__(self, level: "WalkLevel", problem: MechanicalProblem, solution: SparseSolution) -> None:
+        self.level, self.problem, self.solution = level, problem, solution
+
+    @cached_property
+    def sensitivity(self) -> Sensitivity:
+        """Factorised optimality conditions."""
+        return Sensitivity(self.problem, self.solution)
+
+    @cached_property
+    def _moves(self) -> np.ndarray:
+        gradients = self.problem.criterion_gradients(self.solution.w)[:, self.level.indices]
+        return self.sensitivity.of_objective(gradients / self.level.normalisers)
+
+    def residual_by_time(self) -> np.ndarray:
+        """Optimal minus measured coordinates at the nodes that are not given, shape (n_free, n_q)."""
+        n_q = self.level.tracked.stride.n_q
+        return (self.problem.states(self.solution.w) - self.level.tracked.stride.reference)[self.level.free, :n_q]
+
+    @property
+    def residual(self) -> np.ndarray:
+        """The same, shape (n_free * n_q,)."""
+        return self.residual_by_time().ravel()
+
+    def jacobian(self) -> np.ndarray:
+        """Derivative of the residual in the weights, shape (n_free * n_q, n_theta)."""
+        n_q = self.level.tracked.stride.n_q
+        n_x = self.level.tracked.stride.reference.size
+        moves = self._moves[:n_x].reshape(-1, 2 * n_q, len(self.level.indices))
+        return moves[self.level.free, :n_q].reshape(-1, len(self.level.indices))
+
+    def predict(self, step: np.ndarray) -> SparseSolution:
+        """First-order prediction after a step in the weights, shape (n_theta,)."""
+        return self.sensitivity.predict(self._moves @ step)
+
+    def cost_terms(self) -> dict[str, float]:
+        """Weighted parts of the cost: each criterion, the torque floor, the smoothness floor, contact forces."""
+        return self.level.cost_terms(self.problem, self.solution)
+
+
+class WalkLevel:
+    """A `bilevel.problem.LowerLevel` made from a tracked walk."""
+
+    def __init__(self, tracked: TrackedWalk, settings: IdentificationSettings) -> None:
+        self.tracked, self.settings = tracked, settings
+        names = list(ALL)
+        self.indices = [names.index(by_name(name).name) for name in settings.criteria]
+        self.torque = names.index("torque")
+        self.all_normalisers = tracked.problem.criteria(tracked.solution.w)
+        self.normalisers = self.all_normalisers[self.indices]
+        self.given_nodes = arc_boundaries(tracked.stride.stages, settings.longest_arc)
+        self.free = np.setdiff1d(np.arange(len(tracked.stride.times)), self.given_nodes)
+        functions = walking_functions(layout_of(tracked.stride.subject)).functions
+        self.structure = MechanicalStructure(self._layout(), functions)
+        self.smooth = np.concatenate([np.zeros(3), np.ones(tracked.stride.n_q - 3)])
+        self.acceleration_normaliser = self._acceleration_cost(tracked.problem, tracked.solution.w)
+
+    @property
+    def n_theta(self) -> int:
+        """Number of weights."""
+        return len(self.indices)
+
+    def _layout(self) -> MechanicalLayout:
+        stride, tracked = self.tracked.stride, self.tracked
+        everything = tuple(range(2 * stride.n_q))
+        boundary = Boundary(tuple((int(node), everything) for node in self.given_nodes))
+        layout = MechanicalLayout(stride.stages, stride.n_q, N_FORCES, ROOT, boundary)
+        functions = walking_functions(layout_of(stride.subject)).functions
+        return without_redundant_contacts(layout, functions, tracked.problem.data.p, tracked.states)
+
+    def _acceleration_cost(self, problem: MechanicalProblem, w: np.ndarray) -> float:
+        n_q = self.tracked.stride.n_q
+        a = problem.points(w)[:, 2 * n_q : 3 * n_q]
+        return float(problem.shared.weights @ (a**2 @ self.smooth))
+
+    def problem(self, theta: np.ndarray, tracking: float = 0.0) -> MechanicalProblem:
+        """Lower level for weights theta, shape (n_theta,), with a factor on the tracking weights (0: none)."""
+        settings = self.settings
+        weights = np.zeros(len(ALL))
+        weights[self.indices] = theta / self.normalisers
+        weights[self.torque] += settings.torque_floor / self.all_normalisers[self.torque]
+        data = replace(
+            self.tracked.problem.data,
+            theta=weights,
+            given=self.tracked.states,
+            tracking=tracking * self.tracked.problem.data.tracking,
+            acceleration_weights=2.0 * settings.smoothness_floor / self.acceleration_normaliser * self.smooth,
+            force_weight=settings.force_weight,
+        )
+        return MechanicalProblem(self.structure, data)
+
+    def respond(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
+        """Solve for theta, shape (n_theta,), from a nearby solution."""
+        problem = self.problem(theta)
+        solution = replace(self.settings.solver, max_iter=NEARBY).solve(problem, start)
+        return WalkOptimum(self, problem, solution) if _solved(solution) else self.respond_from_afar(theta, start)
+
+    def respond_from_afar(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
+        """Solve for theta, shape (n_theta,), from a solution for quite other weights."""
+        problem = self.problem(theta)
+        # Far from the solution a small barrier parameter would press the iterates against the inequalities.
+        return WalkOptimum(self, problem, replace(self.settings.solver, mu_initial=1e-4).solve(problem, start))
+
+    def from_tracking(self, theta: np.ndarray, progress: Callable[[int, float], None] | None = None) -> WalkOptimum:
+        """Follow the solution from the tracked walk, shape (n_theta,) weights, to no tracking at all."""
+        solver = replace(self.settings.solver, mu_initial=1e-3)
+        problem = self.problem(theta, self.settings.continuation[0])
+        solution = solver.solve(problem, self.tracked.solution.w, progress)
+        for factor in self.settings.continuation[1:]:
+            problem = self.problem(theta, factor)
+            solution = solver.solve(problem, solution, progress)
+        return WalkOptimum(self, problem, solution)
+
+    def cost_terms(self, problem: MechanicalProblem, solution: SparseSolution) -> dict[str, float]:
+        """Weighted parts of the cost at a solution."""
+        w, d = solution.w, problem.data
+        criteria = problem.criteria(w)
+        names = list(ALL)
+        floor = self.settings.torque_floor * criteria[self.torque] / self.all_normalisers[self.torque]
+        terms = {names[i]: float(d.theta[i] * criteria[i]) for i in self.indices}
+        if self.torque in self.indices:
+            terms["torque"] -= float(floor)
+        smooth = self.settings.smoothness_floor * self._acceleration_cost(problem, w) / self.acceleration_normaliser
+        forces = problem.points(w)[:, 3 * self.tracked.stride.n_q :]
+        contact = 0.5 * d.force_weight * float(problem.shared.weights @ np.sum(forces**2, axis=1))
+        return terms | {"torque_floor": float(floor), "smoothness_floor": smooth, "contact_force_floor": contact}
+
+
+def _solved(solution: SparseSolution) -> bool:
+    return solution.status is Status.SOLVED
+
+
+def arc_boundaries(stages: tuple[ContactStage, ...], longest: float) -> np.ndarray:
+    """Nodes with given states: ends, changes between stance and swing, and between them at most `longest` [s] apart."""
+    ends = np.concatenate([[0], np.cumsum([s.n_intervals for s in stages])])
+    stands = [tuple(any(i in s.active for i in foot) for foot in HEIGHTS) for s in stages]
+    changes = [int(ends[i]) for i in range(1, len(stages)) if stands[i] != stands[i - 1]]
+    cuts = [0, *changes, int(ends[-1])]
+    lengths = np.concatenate([np.full(s.n_intervals, s.duration / s.n_intervals) for s in stages])
+    times = np.concatenate([[0.0], np.cumsum(lengths)])
+    nodes: set[int] = set(cuts)
+    for first, last in zip(cuts[:-1], cuts[1:], strict=True):
+        pieces = max(1, int(np.ceil((times[last] - times[first]) / longest - 1e-9)))
+        nodes |= {first + round((last - first) * i / pieces) for i in range(1, pieces)}
+    return np.array(sorted(nodes))
