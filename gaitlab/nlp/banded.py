@@ -80,8 +80,8 @@ class KKTAssembly:
 
     @cached_property
     def bandwidth(self) -> int:
-        """Half-bandwidth of the ordered KKT matrix."""
-        return int(np.max(np.abs(self._pattern.rows - self._pattern.cols)))
+        """Half-bandwidth of the ordered KKT matrix; at least one, so that the first place in memory is fill-in."""
+        return int(np.max(np.abs(self._pattern.rows - self._pattern.cols), initial=1))
 
     @cached_property
     def _flat(self) -> np.ndarray:
@@ -156,7 +156,7 @@ class KKTAssembly:
         return np.where(np.abs(i - j) <= k, j * (3 * k + 1) + np.clip(2 * k + i - j, 0, 3 * k), 0)
 
     def shifted(self, band: np.ndarray, delta: tuple[float, float]) -> np.ndarray:
-        """Copy of K, shape (n, 3 bandwidth + 1), plus delta_w on the variables' and less delta_g on the rows' diagonal."""
+        """Copy of K, shape (n, 3 bandwidth + 1), delta_w added for variables and delta_g taken for equations."""
         s = self.structure
         moved = band.copy()
         shift = np.concatenate([np.full(s.n_w, delta[0]), np.full(s.n_g, -delta[1])])

@@ -107,6 +107,15 @@ def test_products_with_sparse_matrices(chain):
     np.testing.assert_allclose(assembly.multiply_transposed(s.jac_g, chain.jac_g, y, s.n_w), dense.T @ y, atol=1e-12)
 
 
+def test_diagonal_matrices():
+    """A separable problem in one block: its band is the diagonal."""
+    none, i, nothing = Pattern(np.zeros(0, int), np.zeros(0, int)), np.arange(3), np.zeros(0)
+    settings = {"n_w": 3, "n_g": 0, "n_c": 0, "jac_g": none, "jac_c": none, "order": i, "blocks": np.array([3])}
+    assembly = KKTAssembly(SparseStructure(hess=Pattern(i, i), **settings))
+    for diagonal, expected in [([4.0, 1.0, 1.0], 0), ([4.0, -1.0, -1.0], 2)]:
+        assert assembly.negative_eigenvalues(assembly.band((np.array(diagonal), nothing, nothing), nothing)) == expected
+
+
 def test_orders_that_are_no_permutations_are_refused(chain):
     wrong = SparseStructure(**(vars(chain.structure) | {"order": np.zeros_like(chain.structure.order)}))
     with pytest.raises(ProblemError, match="permutation of 42"):
