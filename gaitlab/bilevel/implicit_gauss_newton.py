@@ -50,6 +50,7 @@ class ImplicitGaussNewton:
 @dataclass
 class _State:
     theta: np.ndarray
+    """Weights on the simplex, shape (n_theta,)."""
     response: Response
 
     @property

@@ -26,9 +26,9 @@ class Uncertainty:
     """Second moments of estimated weights."""
 
     covariance: np.ndarray
-    """Shape (n_theta, n_theta); infinite variance where a direction carries no information."""
+    """Covariance, shape (n_theta, n_theta); infinite variance where a direction carries no information."""
     identifiable: np.ndarray
-    """Shape (n_theta,)."""
+    """One per weight, shape (n_theta,)."""
     condition: float
 
 
