@@ -66,6 +66,7 @@ class _Search:
     progress: Progress | None
     damping: float = field(init=False)
     second_order: np.ndarray = field(init=False)
+    """Structured quasi-Newton estimate of what Gauss-Newton leaves out of the Hessian, shape (n_theta, n_theta)."""
     lower_iterations: int = 0
 
     def __post_init__(self) -> None:
