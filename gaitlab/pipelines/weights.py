@@ -12,12 +12,14 @@ from ..clinical.document import StrideWeights, WeightsEntry
 from ..errors import InvalidRecording, NotConverged
 from ..mocap.cycles import Cycle, full_strides
 from ..mocap.recording import Event, Recording
+from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
 from ..walking.contact_phases import contact_phases, foot_directions
 from ..walking.contact_schedule import contact_stages
 from ..walking.criteria import by_name
 from ..walking.explanation import Explanation, ExplanationSettings, explain
 from ..walking.identification import IdentificationSettings
+from ..walking.model import walking_functions
 from ..walking.tracking import MeasuredStride, measured_stride
 from .optimal_arrays import optimal_arrays
 from .pooling import pool_strides
@@ -74,6 +76,8 @@ def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeight
     for name in request.criteria:
         by_name(name)
     strides, skipped = usable_strides(request)
+    progress(Step(stage="preparing the model (the first time on a machine: a minute)", trial=request.recording.name))
+    walking_functions(layout_of(strides[0][1].subject))
     explained, failed = _explain_all(request, strides, progress)
     main = explained[0]
     entries = [stride_entry(request.recording.name, s.cycle, s.found, s.seconds) for s in explained]

@@ -84,7 +84,7 @@ def _fit(weights: Weights) -> str:
         return tag("section", title + missing("fit", "result.json holds none"))
     picture = fit_figure(weights.fit_rms, weights.comparison) if weights.comparison else ""
     absent = "" if picture else missing("comparison with other weights", "it was not computed")
-    rows = [(spoken(name), f"{np.degrees(rms):.2f}", f"{rms:.4f}") for name, rms in weights.per_joint.items()]
+    rows = [_fit_row(name, rms) for name, rms in weights.per_joint.items()]
     rows.append(("all", f"{np.degrees(weights.fit_rms):.2f}", f"{weights.fit_rms:.4f}"))
     joints = table(("joint", "rms [deg]", "rms [rad]"), rows, "Model-optimal minus measured angles")
     unseen = reals(mapping(weights.document.get("fit")).get("unseen_stride_rms_rad"))
@@ -92,6 +92,13 @@ def _fit(weights: Weights) -> str:
     caption = "The same weights on strides that were not used to find them"
     seen = table(("stride", "rms [deg]", "rms [rad]"), others, caption) if others else ""
     return tag("section", title + picture + absent + joints + seen)
+
+
+def _fit_row(name: str, rms: float) -> tuple[str, str, str]:
+    """A row of the table of joints; the position of the pelvis is a length, counted as 1 m = 1 rad in the total."""
+    if name == "pelvis_position":
+        return spoken(name), "–", f"{rms:.4f} m"
+    return spoken(name), f"{np.degrees(rms):.2f}", f"{rms:.4f}"
 
 
 def _strides(weights: Weights) -> str:
