@@ -20,6 +20,8 @@ from .uncertainty import weight_uncertainty
 
 Progress = Callable[[int, float], None]
 
+UNSOLVED = "the lower level is not solved for neighbouring weights"
+
 
 @dataclass(frozen=True, kw_only=True)
 class ImplicitGaussNewton:
@@ -87,21 +89,23 @@ class _Search:
 
     def _step(self, jacobian: np.ndarray) -> str | None:
         """Move to better weights; the reason to stop, or None to go on."""
+        solved = True
         while self.damping <= self.method.max_damping:
             theta = self._subproblem(jacobian)
             step = theta - self.state.theta
             if np.max(np.abs(step)) <= self.method.tol_step:
-                return "converged: the weights do not move"
+                return "converged: the weights do not move" if solved else UNSOLVED
             response = self.lower.respond(theta, self.state.response.predict(step))
             self.lower_iterations += response.solution.iterations
             trial = _State(theta, response)
-            if response.solution.status is Status.SOLVED and trial.loss < self.state.loss:
+            solved = response.solution.status is Status.SOLVED
+            if solved and trial.loss < self.state.loss:
                 decrease = (self.state.loss - trial.loss) / self.state.loss
                 self._learn(jacobian, trial, step)
                 self.state, self.damping = trial, max(self.damping / 5.0, 1e-9)
                 return "converged: the fit does not improve" if decrease <= self.method.tol_decrease else None
             self.damping *= 8.0
-        return "converged: no smaller step improves the fit"
+        return "converged: no smaller step improves the fit" if solved else UNSOLVED
 
     def _subproblem(self, jacobian: np.ndarray) -> np.ndarray:
         """Minimise the damped quadratic model of the loss over the simplex."""

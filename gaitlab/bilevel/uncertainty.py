@@ -38,7 +38,9 @@ def weight_uncertainty(jacobian: np.ndarray, residual: np.ndarray) -> Uncertaint
     tangent = null_space(np.ones((1, n_theta)))  # (n_theta, n_theta - 1)
     if n_theta == 1:
         return Uncertainty(covariance=np.zeros((1, 1)), identifiable=np.ones(1, dtype=bool), condition=1.0)
-    _, strengths, directions = np.linalg.svd(jacobian @ tangent, full_matrices=False)
+    # Zero rows keep directions that too few measurements leave blind.
+    padded = np.vstack([jacobian @ tangent, np.zeros((n_theta, n_theta - 1))])
+    _, strengths, directions = np.linalg.svd(padded, full_matrices=False)
     weak = strengths <= SMALLEST_SINGULAR_VALUE * max(strengths[0], np.finfo(float).tiny)
     degrees = max(residual.size - n_theta + 1, 1)
     variance = inflation(residual) * float(np.sum(residual**2)) / degrees

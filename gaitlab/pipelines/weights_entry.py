@@ -93,6 +93,7 @@ def _solver(found: Explanation, seconds: float) -> Solver:
         seconds=seconds,
         reduced_hessian="positive definite" if minimum else "not positive definite",
         tracking_rms_rad=found.tracked.rms,
+        tracking_seconds=found.tracking_seconds,
         regularisation_share=sum(terms[name] for name in FLOORS) / sum(terms.values()),
         message="" if found.is_certified else f"{found.estimate.reason}; {solution.status.value}",
     )

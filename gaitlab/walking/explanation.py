@@ -1,7 +1,8 @@
 """Why this stride looks as it does: tracking, the pure optimal control problem, and the weights that fit best."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from time import perf_counter
 
 import numpy as np
 
@@ -42,6 +43,8 @@ class Explanation:
     """Fit of equal weights; None where that problem was not solved."""
     single_rms: Mapping[str, float | None]
     """Fit of each criterion alone; empty where it was not asked for."""
+    tracking_seconds: float | None = None
+    """Time that the tracking took [s]; None where it was done before."""
 
     @property
     def is_certified(self) -> bool:
@@ -59,9 +62,11 @@ def explain(
         NotConverged: the tracking problem or the optimal control problem with equal weights was not solved.
     """
     settings = settings or ExplanationSettings()
+    begin = perf_counter()
     tracked = track(stride, settings.tracking, _part(report, "tracking"))
+    seconds = perf_counter() - begin
     _require(tracked.solution.status, "tracking the measured stride", tracked.solution.iterations)
-    return explain_tracked(tracked, settings, report)
+    return replace(explain_tracked(tracked, settings, report), tracking_seconds=seconds)
 
 
 def explain_tracked(

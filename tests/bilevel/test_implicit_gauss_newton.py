@@ -1,6 +1,7 @@
 """The upper level where the lower level's solution is a formula."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -111,3 +112,14 @@ def test_progress_cancels():
     with pytest.raises(Cancelled):
         solve(level, progress=progress)
     assert level.asked
+
+
+def test_a_lower_level_that_never_solves_is_not_called_converged():
+    level = WeightedLevel([[0.0, 0.0], [1.0, 0.0]], np.ones((2, 2)), [0.8, 0.1])
+    start = level.from_scratch(np.array([0.5, 0.5]))
+    level.respond = lambda theta, _: SimpleNamespace(
+        solution=replace(start.solution, status=Status.STALLED), residual=start.residual
+    )
+    estimate = ImplicitGaussNewton().solve(level, np.array([0.5, 0.5]), start)
+    assert not estimate.converged
+    assert "not solved" in estimate.reason

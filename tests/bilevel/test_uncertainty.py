@@ -94,3 +94,9 @@ def test_inflation_of_nothing():
 def test_correlation():
     covariance = np.array([[4.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, np.inf]])
     np.testing.assert_allclose(correlation(covariance), [[1.0, 0.5, 0.0], [0.5, 1.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+def test_fewer_measurements_than_weights_leave_weights_unknown():
+    uncertainty = weight_uncertainty(np.array([[1.0, 2.0, 4.0]]), np.array([[0.1]]))
+    assert np.isinf(np.diag(uncertainty.covariance)).any()
+    assert not uncertainty.identifiable.all()

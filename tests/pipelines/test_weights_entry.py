@@ -36,7 +36,7 @@ class MadeUp:
             w=nothing, s=nothing, lam_g=nothing, lam_c=nothing, f=5.0,
             mu=1e-7, iterations=4, residuals=residuals, status=Status.SOLVED,
         )  # fmt: skip
-        self.is_certified = certified
+        self.is_certified, self.tracking_seconds = certified, 3.0
         self.equal_rms, self.single_rms = 0.08, {"torque": 0.09, "lateral_stability": None, "hip_rotation_torque": 0.1}
         self.tracked = SimpleNamespace(
             rms=0.02, solution=SimpleNamespace(iterations=20), stride=SimpleNamespace(times=np.linspace(0.0, 1.0, 46))
