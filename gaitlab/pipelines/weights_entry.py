@@ -12,6 +12,9 @@ from ..walking.explanation import Explanation
 AT_BOUND = 1e-4
 """Weights below this are zero because the simplex ends there."""
 
+LARGE_FLOORS = 0.2
+"""Share of the floors in the cost above which the weights come with a caution; healthy strides have 0.03 to 0.06."""
+
 FLOORS = ("torque_floor", "smoothness_floor", "contact_force_floor")
 
 JOINTS = (
@@ -108,6 +111,13 @@ def _notes(found: Explanation) -> list[str]:
         f"Besides the criteria the cost holds a torque floor of {settings.torque_floor:g} and a smoothness floor of "
         f"{settings.smoothness_floor:g} of their tracked values.",
     ]
+    terms = found.optimum.cost_terms()
+    floors = sum(terms[name] for name in FLOORS) / sum(terms.values())
+    if floors > LARGE_FLOORS:
+        notes.append(
+            f"The floors pay {100 * floors:.0f} % of the cost: the criteria explain little of this stride. "
+            "Check its markers before reading the weights."
+        )
     blind = [n for n, known in zip(settings.criteria, found.estimate.identifiable, strict=True) if not known]
     if blind:
         notes.append(f"The data do not tell the weights of: {', '.join(blind)}.")

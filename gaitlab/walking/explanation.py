@@ -79,11 +79,12 @@ def explain_tracked(
     equal = level.from_tracking(theta, _part(report, "continuation"))
     _require(equal.solution.status, "the optimal control problem without tracking", equal.solution.iterations)
     singles = single_criteria(level, equal, report) if settings.single_criteria else []
-    starts = sorted(
-        [(theta, equal), *((vertex, r) for vertex, r in singles if _solved(r))],
-        key=lambda start: rms(start[1].residual),
-    )
-    estimate = settings.method.solve(level, *starts[0], _part(report, "weights"))
+    candidates = [(theta, equal), *((vertex, r) for vertex, r in singles if _solved(r))]
+    best = min(candidates, key=lambda candidate: rms(candidate[1].residual))
+    # The loss has several minima: the middle of the simplex is tried even where a corner fits better at first.
+    starts = [best] if best is candidates[0] else [best, candidates[0]]
+    estimates = [settings.method.solve(level, *start, _part(report, "weights")) for start in starts]
+    estimate = min(estimates, key=lambda found: found.rms)
     return Explanation(
         tracked=tracked,
         level=level,
