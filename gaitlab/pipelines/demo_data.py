@@ -1,19 +1,20 @@
 """The demo recordings of both children: `gaitlab demo-data` writes them."""
 
+import json
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..errors import OutputError
 from ..mocap.c3d import write_c3d
 from ..multibody.presets import ABLE_BODIED_CHILD, CP_CHILD
-from .demo_gait import reference_gait
 from .demo_markers import body_parameters, standing_coordinates, with_markers
 from .demo_patterns import GaitPattern, demo_patterns
 from .demo_recording import Laboratory, static_recording, walk_recording
-from .demo_reference import reference_walk
+from .demo_walk import demo_walk
 
 HEIGHTS = {child.name: child.height for child in (CP_CHILD, ABLE_BODIED_CHILD)}
 """[m]"""
@@ -23,6 +24,21 @@ WALKS: Mapping[str, Mapping[str, tuple[float, float]]] = {
 }
 """Stride time [s] and speed [m/s]."""
 LABORATORIES = {"walk1": Laboratory(), "walk2": Laboratory(heading=np.pi, noise=5e-4, seed=2)}
+WEIGHTS: Mapping[str, dict[str, float]] = {
+    "demo_cp_child": {
+        "lateral_stability": 0.35,
+        "torque": 0.25,
+        "hip_adduction_torque": 0.25,
+        "hip_rotation_torque": 0.15,
+    },
+    "demo_able_bodied_child": {
+        "lateral_stability": 0.15,
+        "torque": 0.50,
+        "hip_adduction_torque": 0.20,
+        "hip_rotation_torque": 0.15,
+    },
+}
+"""Of criteria divided by their values on the optimal stride."""
 
 
 def write_demo_data(directory: Path) -> None:
@@ -46,7 +62,16 @@ def _write_child(folder: Path, pattern: GaitPattern) -> None:
     subject = with_markers(subject, parameters, pattern.tilt)
     standing = standing_coordinates(subject, pattern)
     write_c3d(folder / "static.c3d", static_recording(subject, standing, parameters))
+    truth: dict[str, Any] = {
+        "preset": subject.name,
+        "parameters": parameters,
+        "static_q": standing.round(7).tolist(),
+        "markers_noise_m": {name: laboratory.noise for name, laboratory in LABORATORIES.items()},
+        "walks": {},
+    }
     for name, (stride_time, speed) in WALKS[pattern.name].items():
-        gait = reference_gait(pattern.paced(stride_time, speed))
-        walk = replace(reference_walk(gait), subject=subject)
+        demo = demo_walk(pattern.paced(stride_time, speed), WEIGHTS[pattern.name])
+        walk = replace(demo.walk, subject=subject)
         write_c3d(folder / f"{name}.c3d", walk_recording(name, walk, parameters, LABORATORIES[name]))
+        truth["walks"][name] = demo.truth
+    (folder / "truth.json").write_text(json.dumps(truth, separators=(",", ":")) + "\n")
