@@ -38,7 +38,7 @@ WEIGHTS: Mapping[str, dict[str, float]] = {
         "hip_rotation_torque": 0.15,
     },
 }
-"""Of criteria divided by their values on the optimal stride."""
+"""Of criteria divided by their values on the tracked stride; truth.json restates them for the recorded stride."""
 
 
 def write_demo_data(directory: Path) -> None:

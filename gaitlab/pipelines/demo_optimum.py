@@ -1,7 +1,14 @@
 """The optimal control problem with known weights behind a demo recording, solved arc by arc on the fine grid.
 
 All states are given at the boundaries of arcs (see `walking.identification`), so the problem falls apart into arcs that
-share only the weights. Those are normalised by the criteria of the optimal stride itself, which takes a repetition.
+share only the weights. The weights are chosen for criteria divided by their values N_i on the tracked stride. The
+estimator divides by their values N'_i on the recorded, the optimal stride. With r_i = N'_i / N_i, the torque's floor f
+and its share r_t, the same problem has there the weights
+
+    theta'_i = k r_i theta_i  (and k r_t (theta_t + f) - f for torque),  k = (1 + f) / (sum_i r_i theta_i + r_t f),
+
+which sum to one, provided that the floor of accelerations is divided by k times their value on the optimal stride: a
+fixed point in one number.
 """
 
 from dataclasses import dataclass, replace
@@ -21,8 +28,8 @@ from ..walking.tracking import N_FORCES
 from .demo_patterns import GRID
 from .demo_tracking import TrackedRecording, pattern_stages
 
-REPETITIONS, CHANGE = 30, 3e-3
-"""Solutions with normalisers of the solution before: so many at most, until none changes by more than this share."""
+REPETITIONS, CHANGE = 20, 1e-4
+"""Repetitions at most for the floor of accelerations, until it changes by no more than this share."""
 NEARBY = 0.1
 """Factor on the weights of tracking on the way from the tracked walk to no tracking."""
 
@@ -50,16 +57,20 @@ class OptimalStride:
     arcs: tuple[OptimalArc, ...]
     criteria: tuple[str, ...]
     weights: np.ndarray
-    """On the simplex, for criteria divided by `normalisers`, shape (n_criteria,)."""
+    """True weights on the simplex, for criteria divided by `normalisers`, shape (n_criteria,)."""
     normalisers: np.ndarray
     """Integrals of the criteria over the optimal stride, shape (n_criteria,)."""
     change: float
-    """Largest relative change of the normalisers in the last repetition."""
+    """Relative change of the floor of accelerations in the last repetition."""
     settings: IdentificationSettings
 
 
 def optimal_stride(tracked: TrackedRecording, weights: dict[str, float]) -> OptimalStride:
     """Solve the arcs of the right stride for known weights.
+
+    Args:
+        tracked: The tracked recording.
+        weights: Criterion, "torque" among them, to its weight in units of the tracked stride.
 
     Raises:
         NotConverged: An arc has no certified solution.
@@ -69,25 +80,37 @@ def optimal_stride(tracked: TrackedRecording, weights: dict[str, float]) -> Opti
     theta = np.array(list(weights.values()))
     level = WalkLevel(tracked.walk, settings)
     bounds = _bounds(tracked, settings)
-    _normalise(level, *_stride_of_tracking(level, tracked))
+    level.all_normalisers, level.acceleration_normaliser = _stride_of_tracking(level, tracked)
+    level.normalisers = level.all_normalisers[level.indices]
     arcs = [_first(tracked, level.problem(theta).data, a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
     change = np.inf
     for _ in range(REPETITIONS):
-        before = level.all_normalisers
-        _normalise(level, *_stride_of_arcs(level, arcs))
-        change = float(np.max(np.abs(level.normalisers / before[level.indices] - 1.0)))
-        data = level.problem(theta).data
-        arcs = [_again(arc, data, settings) for arc in arcs]
+        criteria, accelerations = _stride_of_arcs(level, arcs)
+        scale = _restated(level, theta, criteria)[1]
+        change = abs(scale * accelerations / level.acceleration_normaliser - 1.0)
         if change < CHANGE:
             break
+        level.acceleration_normaliser = scale * accelerations
+        data = level.problem(theta).data
+        arcs = [_again(arc, data, settings) for arc in arcs]
+    criteria = _stride_of_arcs(level, arcs)[0]
     return OptimalStride(
         arcs=tuple(arcs),
         criteria=settings.criteria,
-        weights=theta,
-        normalisers=level.normalisers,
-        change=change,
+        weights=_restated(level, theta, criteria)[0],
+        normalisers=criteria[level.indices],
+        change=float(change),
         settings=settings,
     )
+
+
+def _restated(level: WalkLevel, theta: np.ndarray, criteria: np.ndarray) -> tuple[np.ndarray, float]:
+    """Weights theta' and k of the module's formula."""
+    ratio, floor = criteria / level.all_normalisers, level.settings.torque_floor
+    scale = float((1.0 + floor) / (ratio[level.indices] @ theta + ratio[level.torque] * floor))
+    restated = scale * ratio[level.indices] * theta
+    restated[level.indices.index(level.torque)] += floor * (scale * ratio[level.torque] - 1.0)
+    return restated, scale
 
 
 def _bounds(tracked: TrackedRecording, settings: IdentificationSettings) -> np.ndarray:
@@ -98,11 +121,6 @@ def _bounds(tracked: TrackedRecording, settings: IdentificationSettings) -> np.n
         raise ProblemError(f"{tracked.pattern.name}: arcs must begin on the estimator's grid of {GRID} s")
     first, last = tracked.stride_nodes
     return fine[(fine >= first) & (fine <= last)]
-
-
-def _normalise(level: WalkLevel, criteria: np.ndarray, accelerations: float) -> None:
-    level.all_normalisers, level.normalisers = criteria, criteria[level.indices]
-    level.acceleration_normaliser = accelerations
 
 
 def _stride_of_tracking(level: WalkLevel, tracked: TrackedRecording) -> tuple[np.ndarray, float]:

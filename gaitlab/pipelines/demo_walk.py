@@ -91,8 +91,9 @@ def _truth(
         "certificate": {
             "interval_s": INTERVAL,
             "kkt_residual": max(arc.solution.residuals.max() for arc in stride.arcs),
-            "largest_change_of_normalisers": stride.change,
+            "relative_change_of_acceleration_floor": stride.change,
             "largest_defect_of_simulation": max(arc.defect for arc in arcs),
+            "barrier": max(arc.solution.mu for arc in stride.arcs),
             "rms_optimal_from_tracked": _distance(tracked, stride),
         },
         "rate_hz": RATE,
