@@ -1,0 +1,67 @@
+"""First and second derivatives of a nonlinear program as functions, however they were made."""
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from .codegen import compile_functions
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NLPDerivatives:
+    r"""Derivatives of f(w, p) and g(w, p), with the Lagrangian :math:`L = \lambda_f f + \lambda_g^T g`.
+
+    The first three have the names, arguments and results that `casadi.nlpsol` expects of its options `grad_f`,
+    `jac_g` and `hess_lag`.
+    """
+
+    gradient: ca.Function
+    """(w, p) -> (f, df/dw), shapes (1, 1), (n_w, 1)."""
+    jacobian: ca.Function
+    """(w, p) -> (g, dg/dw), shapes (n_g, 1), (n_g, n_w)."""
+    hessian: ca.Function
+    """(w, p, lam_f, lam_g) -> upper triangle of the Hessian of L in w, shape (n_w, n_w)."""
+    mixed: ca.Function
+    """(w, p, lam_f, lam_g) -> (d2L/dw dp, dg/dp), shapes (n_w, n_p), (n_g, n_p)."""
+
+    def solver_options(self) -> dict[str, ca.Function | bool]:
+        """Options that make `casadi.nlpsol` use these functions."""
+        return {"grad_f": self.gradient, "jac_g": self.jacobian, "hess_lag": self.hessian, "no_nlp_grad": True}
+
+    def compiled(self) -> "NLPDerivatives":
+        """The same functions as machine code, where there is a C compiler; they are compiled once and cached."""
+        functions = (self.gradient, self.jacobian, self.hessian, self.mixed)
+        gradient, jacobian, hessian, mixed = (
+            compile_functions(functions, "nlp_derivatives")[function.name()] for function in functions
+        )
+        return NLPDerivatives(gradient=gradient, jacobian=jacobian, hessian=hessian, mixed=mixed)
+
+
+def derivatives_from(
+    inputs: tuple[ca.MX | ca.SX, ca.MX | ca.SX, ca.MX | ca.SX, ca.MX | ca.SX], results: dict[str, list[ca.MX | ca.SX]]
+) -> NLPDerivatives:
+    """Wrap expressions of (w, p, lam_f, lam_g), under the names of the fields of `NLPDerivatives`."""
+    w, p, lam_f, lam_g = inputs
+    point, lagrangian = ["x", "p"], ["x", "p", "lam_f", "lam_g"]
+    every = [w, p, lam_f, lam_g]
+    return NLPDerivatives(
+        gradient=ca.Function("nlp_grad_f", [w, p], results["gradient"], point, ["f", "grad_f_x"]),
+        jacobian=ca.Function("nlp_jac_g", [w, p], results["jacobian"], point, ["g", "jac_g_x"]),
+        hessian=ca.Function("nlp_hess_l", every, results["hessian"], lagrangian, ["triu_hess_gamma_x_x"]),
+        mixed=ca.Function("nlp_mixed", every, results["mixed"], lagrangian, ["hess_gamma_x_p", "jac_g_p"]),
+    )
+
+
+def differentiate(w: ca.SX, p: ca.SX, f: ca.SX, g: ca.SX) -> NLPDerivatives:
+    """Differentiate the whole problem at once: simple, and slow where the problem is a long chain of stages."""
+    lam_f, lam_g = ca.SX.sym("lam_f"), ca.SX.sym("lam_g", g.numel())
+    lagrangian_gradient = ca.gradient(lam_f * f + ca.dot(lam_g, g), w)
+    return derivatives_from(
+        (w, p, lam_f, lam_g),
+        {
+            "gradient": [f, ca.gradient(f, w)],
+            "jacobian": [g, ca.jacobian(g, w)],
+            "hessian": [ca.triu(ca.jacobian(lagrangian_gradient, w, {"symmetric": True}))],
+            "mixed": [ca.jacobian(lagrangian_gradient, p), ca.jacobian(g, p)],
+        },
+    )
