@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .problem import NLP
+from .problem import NLP, Bounds
 from .solution import NLPSolution
 
 
@@ -22,8 +22,13 @@ class Multipliers:
 class PreparedSolver(Protocol):
     """A solver bound to one parametric problem: derivatives are formed once, many solves follow."""
 
-    def solve(self, w0: np.ndarray, p: np.ndarray, multipliers: Multipliers | None = None) -> NLPSolution:
-        """Solve for the parameters p, shape (n_p,), from w0, shape (n_w,). Not converging is a result."""
+    def solve(
+        self, w0: np.ndarray, p: np.ndarray, multipliers: Multipliers | None = None, bounds: Bounds | None = None
+    ) -> NLPSolution:
+        """Solve for the parameters p, shape (n_p,), from w0, shape (n_w,). Not converging is a result.
+
+        `bounds` replace those of the problem for this solve.
+        """
         ...
 
 

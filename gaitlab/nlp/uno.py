@@ -11,7 +11,7 @@ import numpy as np
 
 from .child_process import ChildFailure, ChildProcess
 from .outcome import Outcome
-from .problem import NLP
+from .problem import NLP, Bounds
 from .solution import KKTConditions, NLPSolution
 from .solver import Multipliers
 from .uno_call import UnoAnswer, UnoCall, UnoOptions, UnoProblem, UnoRequest
@@ -72,14 +72,7 @@ class PreparedUno:
         self._settings, self._nlp = settings, nlp
         self._conditions = KKTConditions(nlp)
         functions = ca.Function("nlp", [nlp.w, nlp.p], [nlp.f, nlp.g])
-        problem = UnoProblem(
-            functions=functions.serialize(),
-            lbw=nlp.lbw,
-            ubw=nlp.ubw,
-            lbg=nlp.lbg,
-            ubg=nlp.ubg,
-            options=settings.casadi_options(),
-        )
+        problem = UnoProblem(functions=functions.serialize(), options=settings.casadi_options())
         self._child = ChildProcess(CHILD, problem, memory=settings.memory)
         self._call = None if settings.isolated else UnoCall(problem)
 
@@ -89,12 +82,15 @@ class PreparedUno:
     def __exit__(self, *_: object) -> None:
         self._child.close()
 
-    def solve(self, w0: np.ndarray, p: np.ndarray, multipliers: Multipliers | None = None) -> NLPSolution:
+    def solve(
+        self, w0: np.ndarray, p: np.ndarray, multipliers: Multipliers | None = None, bounds: Bounds | None = None
+    ) -> NLPSolution:
         """Solve for the parameters p, shape (n_p,), from w0, shape (n_w,)."""
+        limits = bounds or self._nlp.bounds
         n_g = self._nlp.g.numel()
         duals = multipliers or Multipliers(lam_w=np.zeros(w0.size), lam_g=np.zeros(n_g))
-        start = np.clip(w0, self._nlp.lbw, self._nlp.ubw)
-        request = UnoRequest(w0=start, p=p, lam_w0=duals.lam_w, lam_g0=duals.lam_g)
+        start = np.clip(w0, limits.lbw, limits.ubw)
+        request = UnoRequest(w0=start, p=p, lam_w0=duals.lam_w, lam_g0=duals.lam_g, bounds=limits)
         answer: UnoAnswer | ChildFailure = (
             self._call(request) if self._call is not None else self._child.ask(request, self._settings.seconds)
         )
@@ -108,7 +104,7 @@ class PreparedUno:
             lam_w=answer.lam_w,
             lam_g=answer.lam_g,
             f=answer.f,
-            residuals=self._conditions.residuals(answer.w, answer.lam_w, answer.lam_g, p),
+            residuals=self._conditions.residuals(answer.w, answer.lam_w, answer.lam_g, p, limits),
             status=answer.status,
             outcome=_outcome(answer),
             iterations=answer.iterations,

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from .problem import Bounds
+
 UnoOptions = dict[str, bool | dict[str, str | float | int]]
 
 
@@ -14,14 +16,6 @@ class UnoProblem:
 
     functions: str
     """Serialised function (w, p) -> (f, g)."""
-    lbw: np.ndarray
-    """Lower bounds, shape (n_w,)."""
-    ubw: np.ndarray
-    """Upper bounds, shape (n_w,)."""
-    lbg: np.ndarray
-    """Lower bounds of the constraints, shape (n_g,)."""
-    ubg: np.ndarray
-    """Upper bounds of the constraints, shape (n_g,)."""
     options: UnoOptions
 
 
@@ -37,6 +31,7 @@ class UnoRequest:
     """Multipliers of the bounds to start from, shape (n_w,)."""
     lam_g0: np.ndarray
     """Multipliers of the constraints to start from, shape (n_g,)."""
+    bounds: Bounds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +55,6 @@ class UnoCall:
     """Uno bound to one problem."""
 
     def __init__(self, problem: UnoProblem) -> None:
-        self._problem = problem
         functions = ca.Function.deserialize(problem.functions)
         w, p = (ca.SX.sym(name, functions.numel_in(i)) for i, name in enumerate("wp"))
         f, g = functions(w, p)
@@ -68,7 +62,7 @@ class UnoCall:
 
     def __call__(self, request: UnoRequest) -> UnoAnswer:
         """Solve once."""
-        bounds = self._problem
+        bounds = request.bounds
         out = self._solver(
             x0=request.w0, p=request.p, lam_x0=request.lam_w0, lam_g0=request.lam_g0,
             lbx=bounds.lbw, ubx=bounds.ubw, lbg=bounds.lbg, ubg=bounds.ubg,
