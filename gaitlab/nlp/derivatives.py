@@ -26,7 +26,8 @@ class NLPDerivatives:
 
     def solver_options(self) -> dict[str, ca.Function | bool]:
         """Options that make `casadi.nlpsol` use these functions."""
-        return {"grad_f": self.gradient, "jac_g": self.jacobian, "hess_lag": self.hessian, "no_nlp_grad": True}
+        functions = {"grad_f": self.gradient, "jac_g": self.jacobian, "hess_lag": self.hessian}
+        return functions | {"no_nlp_grad": True, "calc_lam_p": False}
 
     def compiled(self) -> "NLPDerivatives":
         """The same functions as machine code, where there is a C compiler; they are compiled once and cached."""
