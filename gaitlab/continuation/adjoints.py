@@ -4,7 +4,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import eigh
 
-from .bordered import factorised, solve
+from .bordered import factorised, solve, stacked
 from .extended_system import ADJOINT, ExtendedSystem
 from .staged_function import Entries, Role
 from .zero_problem import ZeroProblem
@@ -21,9 +21,9 @@ def estimated_multipliers(system: ExtendedSystem, u: np.ndarray, kappa: float = 
     conditions = _conditions(system, u, kappa)
     C = matrix(conditions[0], (len(conditions[1]), problem.n_rows))
     # min |A l|^2 subject to C l = c: unknowns are the residual, l and the multipliers of the conditions.
-    blocks = [[sparse.identity(problem.n_u), A, None], [A.T, None, C.T], [None, C, None]]
+    saddle = stacked([[sparse.identity(problem.n_u), A, None], [A.T, None, C.T], [None, C, None]])
     rhs = np.concatenate([np.zeros(problem.n_u + problem.n_rows), conditions[1]])
-    solution = solve(sparse.bmat(blocks), rhs)
+    solution = solve(saddle, rhs)
     return None if solution is None else solution[problem.n_u : problem.n_u + problem.n_rows]
 
 
@@ -63,7 +63,7 @@ def reduced_curvature(
         return np.zeros(0) if scale else None
     # Random rows complete the constraints to a regular matrix; its inverse holds a basis of their null space.
     border = np.random.default_rng(0).normal(size=(n_free, problem.n_u))
-    factors = factorised(sparse.vstack([J, sparse.csr_matrix(border)]))
+    factors = factorised(stacked([[J], [sparse.csr_matrix(border)]]))
     if factors is None:
         return None
     Z = factors.solve(np.vstack([np.zeros((J.shape[0], n_free)), np.eye(n_free)]))

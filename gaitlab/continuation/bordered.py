@@ -1,16 +1,23 @@
 """Sparse linear algebra of path following: bordered matrices, their determinants and null vectors."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import SuperLU, splu
 
 
-def factorised(matrix: sparse.spmatrix) -> SuperLU | None:
+def stacked(blocks: Sequence[Sequence[Any]]) -> sparse.csc_matrix:
+    """A matrix made of blocks; None stands for zeros."""
+    return sparse.csc_matrix(sparse.bmat(blocks))
+
+
+def factorised(matrix: sparse.csc_matrix) -> SuperLU | None:
     """LU factors of a square matrix, or None where it is singular to working precision."""
     try:
-        return splu(sparse.csc_matrix(matrix))
+        return splu(matrix)
     except RuntimeError:  # "Factor is exactly singular"
         return None
 
@@ -25,7 +32,7 @@ def bordered(jacobian: sparse.csr_matrix, row: np.ndarray) -> sparse.csc_matrix:
     return sparse.csc_matrix(sparse.csr_matrix((data, indices, start), shape=(n, n)))
 
 
-def solve(matrix: sparse.spmatrix, rhs: np.ndarray) -> np.ndarray | None:
+def solve(matrix: sparse.csc_matrix, rhs: np.ndarray) -> np.ndarray | None:
     """Solution for a right-hand side of shape (n,), or None where there is no finite one."""
     factors = factorised(matrix)
     if factors is None:
@@ -36,14 +43,13 @@ def solve(matrix: sparse.spmatrix, rhs: np.ndarray) -> np.ndarray | None:
 
 def least_norm_step(jacobian: sparse.csr_matrix, residual: np.ndarray) -> np.ndarray | None:
     """Shortest solution d of J d = -r, J of shape (n - 1, n) and r (n - 1,); None where J has no full rank."""
-    n_rows, n = jacobian.shape
-    zero = sparse.csr_matrix((n_rows, n_rows))
-    matrix = sparse.bmat([[sparse.identity(n), jacobian.T], [jacobian, zero]])
+    n = len(residual) + 1
+    matrix = stacked([[sparse.identity(n), jacobian.T], [jacobian, None]])
     solution = solve(matrix, np.concatenate([np.zeros(n), -residual]))
     return None if solution is None else solution[:n]
 
 
-def determinant_sign(matrix: sparse.spmatrix) -> int:
+def determinant_sign(matrix: sparse.csc_matrix) -> int:
     """Sign of the determinant; 0 where the matrix is singular to working precision."""
     factors = factorised(matrix)
     if factors is None:
@@ -70,21 +76,21 @@ class NullPair:
     """Unit vectors that a nearly singular matrix maps to almost nothing, from the right and from the left."""
 
     right: np.ndarray
-    """Shape (n,)."""
+    """From the right, shape (n,)."""
     left: np.ndarray
-    """Shape (n,)."""
+    """From the left, shape (n,)."""
 
 
 def null_pair(matrix: sparse.csc_matrix) -> NullPair | None:
     """Singular vectors of the smallest singular value by inverse iteration; None without a factorisation."""
-    n = matrix.shape[0]
     generator = np.random.default_rng(0)
+    n = len(matrix.indptr) - 1
     right, left = generator.normal(size=n), generator.normal(size=n)
     factors = factorised(matrix)
     if factors is None:
         # Singular to the last bit: a perturbation at rounding level has the same null vectors.
-        scale = float(np.abs(matrix).max()) * 1e-12
-        factors = factorised(matrix + scale * sparse.identity(n))
+        scale = float(np.max(np.abs(matrix.data))) * 1e-12
+        factors = factorised(sparse.csc_matrix(matrix + scale * sparse.identity(n)))
     if factors is None:
         return None
     for _ in range(6):
@@ -101,7 +107,6 @@ def singularity(matrix: sparse.csc_matrix, pair: NullPair) -> float | None:
     Smooth along a path and zero where B is singular (Govaerts, Numerical Methods for Bifurcations of Dynamical
     Equilibria, SIAM 2000, ch. 3): the last unknown of the bordered system with right-hand side (0, 1).
     """
-    n = matrix.shape[0]
-    border = sparse.bmat([[matrix, sparse.csr_matrix(pair.left[:, None])], [sparse.csr_matrix(pair.right[None]), None]])
-    solution = solve(border, np.append(np.zeros(n), 1.0))
+    column, row = sparse.csr_matrix(pair.left[:, None]), sparse.csr_matrix(pair.right[None])
+    solution = solve(stacked([[matrix, column], [row, None]]), np.append(np.zeros(len(pair.left)), 1.0))
     return None if solution is None else float(solution[-1])

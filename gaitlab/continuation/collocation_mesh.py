@@ -56,7 +56,7 @@ class Mesh:
 
     @cached_property
     def at_gauss(self) -> tuple[np.ndarray, np.ndarray]:
-        """Matrices from values at the base points to values and slopes at the Gauss points, (degree, degree + 1)."""
+        """Matrices from values at the base points to values and slopes at the Gauss points, shape (m, m + 1)."""
         lagrange = [np.polynomial.Polynomial.fit(self.base, e, self.degree) for e in np.eye(self.degree + 1)]
         points = self.gauss[0]
         values, slopes = np.array([q(points) for q in lagrange]).T, np.array([q.deriv()(points) for q in lagrange]).T

@@ -112,9 +112,13 @@ class ExtendedSystem:
         inequalities = len(self.problem.names_of(Role.INEQUALITY)) if self.adjoint else 0
         return self.problem.n_zero + (self.problem.n_u if self.adjoint else 0) + inequalities + len(self.fixed)
 
-    @cached_property
+    @property
     def weights(self) -> np.ndarray:
         """Weights of the inner product, shape (n_x,): those of the unknowns and of each stage's multipliers."""
+        return self._weights
+
+    @cached_property
+    def _weights(self) -> np.ndarray:
         if not self.adjoint:
             return self.problem.weights
         multipliers = [np.full(f.n_rows, f.weight) for f in self.problem.ordered]

@@ -127,6 +127,7 @@ class TestFunction:
 
     name: str
     function: Callable[[np.ndarray], float]
+    """Of the unknowns, shape (n,)."""
     stops: bool = False
 
     def test(self, system: PathSystem, point: PathPoint) -> float:

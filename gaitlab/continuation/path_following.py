@@ -289,7 +289,8 @@ class _Run:
         def function(s: float) -> float:
             return values[0] if s == 0.0 else values[1] if s == h else along(s)
 
-        return float(brentq(function, 0.0, h, xtol=self.method.event_tol, rtol=1e-15))
+        root, _ = brentq(function, 0.0, h, xtol=self.method.event_tol, full_output=True)
+        return float(root)
 
     def _outside(self, point: PathPoint) -> str | None:
         for name, (lower, upper) in self.bounds.items():
