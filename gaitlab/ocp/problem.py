@@ -1,6 +1,6 @@
 """Multi-stage optimal control problems."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import casadi as ca
@@ -51,6 +51,8 @@ class MultiStageProblem:
         require_symbols("p", self.p)
         if self.q_bounds is not None and self.q_bounds.size != self.q.numel():
             raise ProblemError(f"q_bounds must have size {self.q.numel()}, got {self.q_bounds.size}")
+        if len(set(self.parameter_names)) != len(self.parameter_names):
+            raise ProblemError(f"criteria and parameters need different names, got {', '.join(self.parameter_names)}")
         for stage in self.stages:
             stage.check(self.q, self.p)
         self._check_transitions()
@@ -63,8 +65,8 @@ class MultiStageProblem:
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
-        """Names of the weights and parameters, (theta, p)."""
-        return (*(f"weight of {name}" for name in self.criteria), *element_names(self.p))
+        """Names of the criteria, which stand for their weights, and of the parameters: (theta, p)."""
+        return (*self.criteria, *element_names(self.p))
 
     @property
     def control_value_bounds(self) -> Bounds:
@@ -88,24 +90,26 @@ class MultiStageProblem:
         both = Bounds(lower=np.append(q_bounds.lower, bounds.lower), upper=np.append(q_bounds.upper, bounds.upper))
         return replace(self, q=ca.vertcat(self.q, self.p), q_bounds=both, p=ca.SX(0, 1))
 
-    def parameters(self, *, weights: Sequence[float] = (), p: Sequence[float] = ()) -> np.ndarray:
-        """The vector (theta, p), shape (n_theta + n_p,).
+    def parameters(self, values: Mapping[str, float]) -> np.ndarray:
+        """The vector (theta, p) from numbers by name, shape (n_theta + n_p,).
 
         Raises:
-            ProblemError: There are too few or too many numbers.
+            NotFound: A name is neither a criterion nor a parameter.
+            ProblemError: A number is missing.
         """
-        for what, given, names in (("weights", weights, self.criteria), ("p", p, tuple(element_names(self.p)))):
-            if len(given) != len(names):
-                raise ProblemError(f"{what} must have {len(names)} values ({', '.join(names)}), got {len(given)}")
-        return np.array([*weights, *p], dtype=float)
-
-    def weight_index(self, criterion: str) -> int:
-        """Place of a criterion's weight in (theta, p)."""
-        return _index("criterion", criterion, self.criteria)
+        names = self.parameter_names
+        for name in values:
+            self.parameter_index(name)
+        missing = [name for name in names if name not in values]
+        if missing:
+            raise ProblemError(f"no value is given for {', '.join(missing)}")
+        return np.array([values[name] for name in names], dtype=float)
 
     def parameter_index(self, name: str) -> int:
-        """Place of a parameter in (theta, p)."""
-        return len(self.criteria) + _index("parameter", name, element_names(self.p))
+        """Place of a criterion's weight or of a parameter in (theta, p)."""
+        if name not in self.parameter_names:
+            raise NotFound("criterion or parameter", name, self.parameter_names)
+        return self.parameter_names.index(name)
 
     def _check_transitions(self) -> None:
         if len(self.transitions) != len(self.stages) - 1:
@@ -129,10 +133,3 @@ class MultiStageProblem:
     def _require_stage(self, stage: int) -> None:
         if not 0 <= stage < len(self.stages):
             raise ProblemError(f"stage {stage} does not exist; there are {len(self.stages)}")
-
-
-def _index(kind: str, name: str, names: Iterable[str]) -> int:
-    known = list(names)
-    if name not in known:
-        raise NotFound(kind, name, known)
-    return known.index(name)

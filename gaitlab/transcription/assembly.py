@@ -72,16 +72,12 @@ class PieceDerivatives:
         jacobian, hessian = ca.jacobian(g, z), ca.triu(ca.jacobian(slope, z, {"symmetric": True}))
         mixed, jacobian_p = ca.jacobian(slope, p), ca.jacobian(g, p)
         point, lagrangian = [z, d, p], [z, d, p, lam_f, lam_g]
-        self.gradient = _function("gradient", point, [f, ca.densify(ca.gradient(f, z))])
-        self.jacobian = _function("jacobian", point, [ca.densify(g), _entries(jacobian)])
-        self.hessian = _function("hessian", lagrangian, [_entries(hessian)])
-        self.mixed = _function("mixed", lagrangian, [_entries(mixed), _entries(jacobian_p)])
+        self.gradient = ca.Function("gradient", point, [f, ca.densify(ca.gradient(f, z))])
+        self.jacobian = ca.Function("jacobian", point, [ca.densify(g), _entries(jacobian)])
+        self.hessian = ca.Function("hessian", lagrangian, [_entries(hessian)])
+        self.mixed = ca.Function("mixed", lagrangian, [_entries(mixed), _entries(jacobian_p)])
         self.at_jacobian, self.at_hessian = _places(jacobian), _places(hessian)
         self.at_mixed, self.at_jacobian_p = _places(mixed), _places(jacobian_p)
-
-
-def _function(name: str, inputs: list[ca.SX], outputs: list[ca.SX]) -> ca.Function:
-    return ca.Function(name, inputs, ca.cse(outputs))
 
 
 def _entries(matrix: ca.SX) -> ca.SX:
