@@ -22,6 +22,7 @@ import numpy as np
 from scipy import sparse
 
 from ..errors import NotFound, ProblemError
+from .inequality import Positions, Relaxation, complementarity_jacobian
 from .staged_function import Entries, Role
 from .zero_problem import ZeroProblem, joined
 
@@ -65,6 +66,10 @@ class PathSystem(Protocol):
 
     def invalid_part(self, x: np.ndarray) -> str | None:
         """Name of a part that returns a number that is not finite at x, shape (n,)."""
+        ...
+
+    def admits(self, old: np.ndarray, new: np.ndarray) -> bool:
+        """Whether a step from old to new, both of shape (n,), is short enough not to miss anything."""
         ...
 
 
@@ -182,8 +187,7 @@ class ExtendedSystem:
         if self.adjoint:
             parts.append(problem.adjoint(u, self.multipliers(x)))
         if self._relaxed:
-            g, sigma = values[self._inequality_rows], self.multipliers(x)[self._inequality_rows]
-            parts.append(-sigma * g - x[-1] * x[self._objective_position])
+            parts.append(self._relaxation(x, values).residual())
         parts.append(np.array([self.parameter(x, name) - value for name, value in self.fixed.items()]))
         return np.concatenate(parts)
 
@@ -208,19 +212,20 @@ class ExtendedSystem:
             return _part(J, source, source + 1, row)
         return Entries(np.array([row]), np.array([self._position(name)]), np.ones(1))
 
-    def _complementarity_jacobian(self, x: np.ndarray, J: Entries) -> list[Entries]:
+    def _relaxation(self, x: np.ndarray, values: np.ndarray) -> Relaxation:
         rows = self._inequality_rows
-        g, sigma = self.problem.values(self.unknowns(x))[rows], self.multipliers(x)[rows]
-        first = self.problem.n_zero + self.problem.n_u
-        in_u = _part(J, rows.start, rows.stop, 0)
-        equation = first + np.arange(len(sigma))
-        one = np.ones(len(sigma))
-        return [
-            Entries(first + in_u.rows, in_u.cols, -sigma[in_u.rows] * in_u.values),
-            Entries(equation, self.problem.n_u + rows.start + np.arange(len(sigma)), -g),
-            Entries(equation, np.full(len(sigma), self._objective_position), -x[-1] * one),
-            Entries(equation, np.full(len(sigma), self.n_x - 1), -x[self._objective_position] * one),
-        ]
+        return Relaxation(values[rows], self.multipliers(x)[rows], float(x[-1]), float(x[self._objective_position]))
+
+    def _complementarity_jacobian(self, x: np.ndarray, J: Entries) -> list[Entries]:
+        rows, problem = self._inequality_rows, self.problem
+        at = Positions(
+            row=problem.n_zero + problem.n_u,
+            sigma=problem.n_u + rows.start,
+            d_objective=self._objective_position,
+            kappa=self.n_x - 1,
+        )
+        point = self._relaxation(x, problem.values(self.unknowns(x)))
+        return complementarity_jacobian(point, at, _part(J, rows.start, rows.stop, 0))
 
     @property
     def _inequality_rows(self) -> slice:
@@ -234,6 +239,16 @@ class ExtendedSystem:
         """The system with its moving references at x, shape (n_x,)."""
         problem = self.problem.refreshed(self.unknowns(x))
         return self if problem is self.problem else replace(self, problem=problem)
+
+    def admits(self, old: np.ndarray, new: np.ndarray) -> bool:
+        """Whether no inequality comes more than ten times closer to its bound from old to new, shapes (n_x,).
+
+        A longer step could pass a fold just before the bound and the bound itself, and see nothing of either.
+        """
+        if not self._relaxed or RELAXATION not in self.fixed:
+            return True
+        before, after = (self.problem.values(self.unknowns(x))[self._inequality_rows] for x in (old, new))
+        return bool(np.all(after <= 0.1 * before))
 
     def invalid_part(self, x: np.ndarray) -> str | None:
         """Name of the first stage that returns a number that is not finite at x, shape (n_x,)."""

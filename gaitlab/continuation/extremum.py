@@ -143,6 +143,8 @@ class _Sequence:
         self.stages: list[ExtremumStage] = []
         self.free = wanted.parameters[: wanted.n_first]
         self.d_objective = ADJOINT + wanted.objective
+        # With this sign the multipliers of inequalities are positive where d mu_1 has reached its target.
+        self.kappa = wanted.target * wanted.relaxation
         self.relaxed = bool(self.problem.names_of(Role.INEQUALITY))
 
     def run(self) -> Extremum:
@@ -165,12 +167,16 @@ class _Sequence:
         if nontrivial:
             fixed[self.d_objective] = self.wanted.target
         if self.relaxed and released != RELAXATION:
-            fixed[RELAXATION] = self.wanted.relaxation
+            fixed[RELAXATION] = self.kappa
         return ExtendedSystem(problem=self.problem, fixed=fixed, adjoint=True, objective=self.wanted.objective)
 
     def _find_fold(self) -> None:
+        for name in self.problem.names_of(Role.INEQUALITY):
+            value = float(self.problem.stage(name).values(self.problem.start)[0])
+            if value >= 0.0:
+                raise _Stuck(f"the start must satisfy the inequality '{name}' strictly: it is {value:.3g}, not < 0")
         system = self._system(nontrivial=False)
-        x = system.first_point(kappa=self.wanted.relaxation)
+        x = system.first_point(kappa=self.kappa)
         better = self._uphill(system, x)
         paths: list[Path] = []
         for direction in (better, -better):
@@ -242,7 +248,7 @@ class _Sequence:
         event = Crossing(parameter=RELAXATION, stops=True)
         step = min(self.method.path.step, 0.1)
         path = replace(self.method.path, step=step).follow(
-            system, x, direction=-tangent, events=(event,), bounds=dict(self.wanted.bounds)
+            system, x, direction=-self.wanted.target * tangent, events=(event,), bounds=dict(self.wanted.bounds)
         )
         self._add(event.name, path)
 
@@ -252,10 +258,10 @@ class _Sequence:
         system = self._system(nontrivial=True, released=released)
         if len(last.x) == system.n_x:
             return system, last.x
-        multipliers = estimated_multipliers(system, self.problem.start, self.wanted.relaxation)
+        multipliers = estimated_multipliers(system, self.problem.start, self.kappa)
         if multipliers is None:
             raise _Stuck("the multipliers are not unique on the new mesh")
-        x = self.method.path.correct(system, system.first_point(multipliers, self.wanted.relaxation))
+        x = self.method.path.correct(system, system.first_point(multipliers, self.kappa))
         if x is None:
             raise _Stuck("the extremum could not be carried over to the new mesh")
         return system, x

@@ -233,13 +233,15 @@ class _Run:
         """The next point and the step length that led there."""
         while h >= self.method.min_step:
             new = self.method.advance(self.system, point, h)
-            if new is not None and self._cosine(point, new) >= self.method.min_cosine:
+            if new is not None and self._is_close(point, new):
                 return new, h
             h /= 2.0
         return None
 
-    def _cosine(self, a: PathPoint, b: PathPoint) -> float:
-        return float(np.sum(self.system.weights * a.tangent * b.tangent))
+    def _is_close(self, a: PathPoint, b: PathPoint) -> bool:
+        """Whether the step from a to b was short enough: tangents alike, and nothing that the system minds."""
+        cosine = float(np.sum(self.system.weights * a.tangent * b.tangent))
+        return cosine >= self.method.min_cosine and self.system.admits(a.x, b.x)
 
     def _look_back(self, a: PathPoint, b: PathPoint, h: float) -> Path | None:
         """Locate the events between two points; the finished path where one of them ends it."""
