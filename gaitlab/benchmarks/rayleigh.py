@@ -44,7 +44,7 @@ def rayleigh() -> Benchmark:
     return Benchmark(
         name="rayleigh",
         title="Rayleigh",
-        source="Hatz (2014), (14.4)-(14.6). The start is (-5, -5) as in (14.4); (14.6) prints (0, -5), and x_2 for x_1.",
+        source="Hatz (2014), (14.4)-(14.6). The start is (-5, -5) of (14.4); (14.6) prints (0, -5), and x_2 for x_1.",
         problem=problem,
         method=MultipleShooting(grids=100, integrator=RungeKutta4(n_steps=3)),
         truth=problem.parameters({"time": 1.0 / 16.0, "energy": 1.0}),
