@@ -15,7 +15,7 @@ discretised problem.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -116,6 +116,12 @@ class Segment:
             data=problem.start[inputs],
             refresh=lambda unknowns: unknowns,
         )
+
+    def on_mesh_of(self, problem: ZeroProblem) -> "Segment":
+        """The segment with the mesh that a problem has it on."""
+        widths = problem.stage(f"{self.name}.collocation").data[:, 0]
+        knots = np.concatenate([[0.0], np.cumsum(widths)[:-1], [1.0]])
+        return replace(self, mesh=Mesh(knots=knots, degree=self.mesh.degree))
 
     def first(self, problem: ZeroProblem) -> np.ndarray:
         """Indices of the first state, shape (n_x,)."""

@@ -218,7 +218,6 @@ class _Sequence:
     def _release(self, name: str) -> None:
         """Let a parameter go until the derivative with respect to it vanishes."""
         parameter = ADJOINT + name
-        self._remesh()
         system, x = self._restart(name)
         if abs(system.parameter(x, parameter)) <= NO_SIGN:
             # Extremal already. Its multiplier is fixed from here on, and the value stays free.
@@ -253,11 +252,11 @@ class _Sequence:
         self._add(event.name, path)
 
     def _restart(self, released: str) -> tuple[ExtendedSystem, np.ndarray]:
-        """The next system, and the last point in its unknowns, shape (n_x,)."""
-        last = self.stages[-1].point
+        """The next system, and the last point in its unknowns, shape (n_x,), carried over to a new mesh if wanted."""
+        if self.wanted.remesh is None:
+            return self._system(nontrivial=True, released=released), self.stages[-1].point.x
+        self.problem = self.wanted.remesh(self.problem, self.problem.start)
         system = self._system(nontrivial=True, released=released)
-        if len(last.x) == system.n_x:
-            return system, last.x
         multipliers = estimated_multipliers(system, self.problem.start, self.kappa)
         if multipliers is None:
             raise _Stuck("the multipliers are not unique on the new mesh")
@@ -265,10 +264,6 @@ class _Sequence:
         if x is None:
             raise _Stuck("the extremum could not be carried over to the new mesh")
         return system, x
-
-    def _remesh(self) -> None:
-        if self.wanted.remesh is not None:
-            self.problem = self.wanted.remesh(self.problem, self.problem.start)
 
     def _follow(self, system: ExtendedSystem, x: np.ndarray, direction: np.ndarray, event: Event) -> Path:
         bounds = dict(self.wanted.bounds)

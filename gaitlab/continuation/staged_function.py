@@ -61,6 +61,11 @@ class Stage(Protocol):
         ...
 
     @property
+    def data(self) -> np.ndarray:
+        """What else it sees, shape (n_copies, n_d)."""
+        ...
+
+    @property
     def weight(self) -> float:
         """Weight of each of its multipliers in the length of a path."""
         ...
@@ -206,6 +211,11 @@ class PickedUnknown:
     def inputs(self) -> np.ndarray:
         """The one unknown it sees, shape (1, 1)."""
         return np.array([[self.index]])
+
+    @property
+    def data(self) -> np.ndarray:
+        """Nothing, shape (1, 0)."""
+        return np.zeros((1, 0))
 
     def values(self, u: np.ndarray) -> np.ndarray:
         """Value at u, shape (n_u,); result (1,)."""
