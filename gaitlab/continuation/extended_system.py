@@ -243,9 +243,10 @@ class ExtendedSystem:
     def admits(self, old: np.ndarray, new: np.ndarray) -> bool:
         """Whether no inequality comes more than ten times closer to its bound from old to new, shapes (n_x,).
 
-        A longer step could pass a fold just before the bound and the bound itself, and see nothing of either.
+        A longer step could pass a fold just before the bound and the bound itself, and see nothing of either. Where
+        kappa changes its sign, active inequalities do so too.
         """
-        if not self._relaxed or RELAXATION not in self.fixed:
+        if not self._relaxed or old[-1] * new[-1] < 0.0:
             return True
         before, after = (self.problem.values(self.unknowns(x))[self._inequality_rows] for x in (old, new))
         return bool(np.all(after <= 0.1 * before))
