@@ -7,8 +7,8 @@ A(r) = 18.5 + 40 r^2 + 10 (r + L)^2 of the arm, the base turns about the vertica
 phi_2 (the printed numerator is the derivative of exactly this; the printed denominator misses two brackets and a
 sine), and the Coriolis term has cos^2, not cos^4. Time is real time, so that velocities and accelerations are both
 scaled by q_0, whereas (14.12) prints q_0 with accelerations only. The arm ends at r = -0.1 as in (14.11); (14.14)
-prints -0.17. The first criterion is the integral over transformed time, as in (13.4) and (14.14); with the factor q_0 that
-(14.11) alone prints, the optimum is 1.30703E+04 at 1.2772 s, farther from the printed one.
+prints -0.17. The first criterion is the integral over transformed time, as in (13.4) and (14.14); with the factor q_0
+that (14.11) alone prints, the optimum is 1.30703E+04 at 1.2772 s, farther from the printed one.
 """
 
 import casadi as ca

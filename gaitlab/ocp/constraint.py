@@ -35,6 +35,11 @@ class Bounds:
         """Which components are fixed, shape (n,)."""
         return self.lower == self.upper
 
+    @property
+    def finite(self) -> np.ndarray:
+        """Which components have a bound, shape (n,)."""
+        return np.isfinite(self.lower) | np.isfinite(self.upper)
+
     @staticmethod
     def none(n: int) -> "Bounds":
         """No bounds on n components."""
@@ -67,6 +72,13 @@ class Constraint:
         n = self.expression.shape[0]
         require_shape(f"constraint '{self.name}'", self.expression, (n, 1))
         require_bounds(f"constraint '{self.name}'", self.lower, self.upper, n)
+
+    def bounded(self) -> "Constraint":
+        """The rows that have a bound: solvers return meaningless multipliers for the others."""
+        rows = np.flatnonzero(np.isfinite(self.lower) | np.isfinite(self.upper)).tolist()
+        return Constraint(
+            name=self.name, expression=self.expression[rows, 0], lower=self.lower[rows], upper=self.upper[rows]
+        )
 
 
 NO_CONSTRAINT = Constraint(name="none", expression=ca.SX(0, 1), lower=np.zeros(0), upper=np.zeros(0))

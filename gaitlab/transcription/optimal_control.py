@@ -55,7 +55,7 @@ class Solve:
         # A Lagrangian of large terms cannot vanish to an absolute tolerance.
         size = 1.0 + float(np.max(np.abs(np.concatenate([solution.lam_g, solution.lam_w])), initial=0.0))
         converged = solution.is_optimal(self.tol * size)
-        reason = "solved" if converged else named(transcribed, blame(nlp, solution.w, p, solution.outcome))
+        reason = "solved" if converged else explain(transcribed, solution, p)
         return OptimalControl(
             solution=solution,
             trajectory=transcribed.trajectory(solution.w, p),
@@ -63,6 +63,17 @@ class Solve:
             minimum=converged and smallest_curvature(nlp, solution, p) > 0.0,
             reason=reason,
         )
+
+
+def explain(transcribed: Transcribed, solution: NLPSolution, p: np.ndarray) -> str:
+    """One sentence on why a solve for parameters p, shape (n_p,), failed, with names of constraints and variables."""
+    nlp = transcribed.nlp
+    g = np.asarray(ca.Function("g", [nlp.w, nlp.p], [nlp.g])(solution.w, p)).ravel()
+    bad = np.flatnonzero(~np.isfinite(g))
+    # An equation tells more than the objective, whose terms it spoils.
+    if bad.size:
+        return f"{transcribed.constraint_names[bad[0]]} evaluates to {g[bad[0]]}"
+    return named(transcribed, blame(nlp, solution.w, p, solution.outcome))
 
 
 def named(transcribed: Transcribed, sentence: str) -> str:

@@ -24,7 +24,7 @@ def stage_pieces(
     unknowns = layout.interval(q)
     yield _intervals(stage, model, layout, unknowns)
     if path_at_end and model.end_path.numel_out(1):
-        path = stage.path
+        path = stage.path.bounded()
         yield Piece(
             function=model.end_path, unknowns=unknowns[-1:], data=layout.grid.data[-1:], lower=path.lower[None],
             upper=path.upper[None], labels=tuple(_path_labels(stage, f"at the end of stage '{stage.name}'")),
@@ -40,21 +40,21 @@ def stage_pieces(
 
 
 def _intervals(stage: Stage, model: StageModel, layout: StageLayout, unknowns: np.ndarray) -> Piece:
-    n_g, n = model.interval.numel_out(1), layout.grid.n
-    repeats = model.n_path // max(stage.path.lower.size, 1)
-    n_inner = n_g - model.n_defects - model.n_path
-    controls = stage.control_bounds
-    inner_repeats = n_inner // max(stage.n_u, 1)
+    n, path, controls = layout.grid.n, stage.path.bounded(), stage.control_bounds
+    bounded = np.flatnonzero(controls.finite)
+    repeats = model.n_path // max(path.lower.size, 1)
+    n_inner = model.interval.numel_out(1) - model.n_defects - model.n_path
+    inner_repeats = n_inner // max(bounded.size, 1)
     zeros = np.zeros(model.n_defects)
-    lower = [zeros, np.tile(stage.path.lower, repeats), np.tile(controls.lower, inner_repeats)]
-    upper = [zeros, np.tile(stage.path.upper, repeats), np.tile(controls.upper, inner_repeats)]
+    lower = [zeros, np.tile(path.lower, repeats), np.tile(controls.lower[bounded], inner_repeats)]
+    upper = [zeros, np.tile(path.upper, repeats), np.tile(controls.upper[bounded], inner_repeats)]
+    states, control_names = element_names(stage.x), element_names(stage.u)
     labels = list[str]()
     for k in range(n):
         where = f"in interval {k} of stage '{stage.name}'"
-        states = element_names(stage.x)
         labels += [f"the differential equation of {states[i % stage.n_x]} {where}" for i in range(model.n_defects)]
         labels += _path_labels(stage, where) * repeats
-        labels += [f"the bounds of {name} {where}" for name in element_names(stage.u)] * inner_repeats
+        labels += [f"the bounds of {control_names[i]} {where}" for i in bounded.tolist()] * inner_repeats
     return Piece(
         function=model.interval, unknowns=unknowns, data=layout.grid.data, lower=np.tile(np.concatenate(lower), (n, 1)),
         upper=np.tile(np.concatenate(upper), (n, 1)), labels=tuple(labels),
@@ -62,7 +62,7 @@ def _intervals(stage: Stage, model: StageModel, layout: StageLayout, unknowns: n
 
 
 def _path_labels(stage: Stage, where: str) -> list[str]:
-    n = stage.path.lower.size
+    n = stage.path.bounded().lower.size
     return [f"path constraint '{stage.path.name}'{f'[{i}]' if n > 1 else ''} {where}" for i in range(n)]
 
 
@@ -143,8 +143,8 @@ def point_piece(reader: PointReader, each: PointConstraint, q: ca.SX) -> Piece:
     unique = np.unique(np.concatenate([reader.layout.q, *places]))
     z, whole = ca.SX.sym("z", unique.size), ca.SX.zeros(reader.layout.n_w)
     whole[unique.tolist()] = z
-    expression = point_expression(reader, each, whole, q)
-    rule = each.constraint
+    rule = each.constraint.bounded()
+    expression = point_expression(reader, PointConstraint(points=each.points, constraint=rule), whole, q)
     function = ca.Function("point", [z, ca.SX.sym("d", 0), reader.parameters], [ca.SX(0), ca.densify(expression)])
     times = ", ".join(f"{_when(point)}" for point in each.points)
     return Piece(

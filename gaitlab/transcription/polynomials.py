@@ -46,7 +46,8 @@ def _lagrange(points: np.ndarray) -> list[np.polynomial.Polynomial]:
     polynomials = list[np.polynomial.Polynomial]()
     for i, point in enumerate(points):
         others = np.delete(points, i)
-        polynomials.append(np.polynomial.Polynomial.fromroots(others) / np.prod(point - others))
+        monic = np.polynomial.Polynomial.fromroots(others) if others.size else np.polynomial.Polynomial([1.0])
+        polynomials.append(monic / np.prod(point - others))
     return polynomials
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import casadi as ca
+import numpy as np
 
 from ..ocp.cost import lagrange_terms, mayer_terms
 from ..ocp.problem import MultiStageProblem
@@ -59,7 +60,7 @@ class _Builder:
         arguments = [stage.t, stage.x, stage.u, problem.q, problem.p]
         self.ode = ca.Function("ode", arguments, [stage.ode])
         self.running = ca.Function("running", arguments, [lagrange_terms(stage, problem.criteria)])
-        self.path = ca.Function("path", arguments, [stage.path.expression])
+        self.path = ca.Function("path", arguments, [stage.path.bounded().expression])
 
     def build(self) -> StageModel:
         discretised = self.scheme.discretise(self._rhs, self.x)
@@ -68,7 +69,8 @@ class _Builder:
             for sample in discretised.samples:
                 integrals += sample.weight * self._scale() * self.running(*self._arguments(sample.s, sample.x))
         path = ca.vertcat(ca.SX(0, 1), *[self._path_at(s) for s in self._path_times()])
-        inner = ca.vec(self.shape.inner(self.c_left, self.c_right, self.width).T)
+        bounded = np.flatnonzero(self.stage.control_bounds.finite).tolist()
+        inner = ca.vec(self.shape.inner(self.c_left, self.c_right, self.width)[:, bounded].T)
         g = ca.vertcat(discretised.defects, path, inner)
         end_path = self.path(*self._arguments(ca.SX(1), self.x.right)) if self._has_path() else ca.SX(0, 1)
         s = ca.SX.sym("s")
@@ -102,7 +104,7 @@ class _Builder:
         return self._scale() * self.ode(*self._arguments(s, x))
 
     def _has_path(self) -> bool:
-        return self.stage.path.expression.numel() > 0
+        return self.path.numel_out(0) > 0
 
     def _path_times(self) -> tuple[float, ...]:
         return self.scheme.path_times if self._has_path() else ()
