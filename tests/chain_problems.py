@@ -39,7 +39,7 @@ def shortest_time(speed_limit=np.inf):
 
 
 def doubling_jump():
-    """min int u^2 over two stages of 1 s, dx/dt = u from 0 to 1, doubled in between: u = 0.4, 0.2; the minimum is 0.2."""
+    """min int u^2 over two stages of 1 s, dx/dt = u from 0 to 1, doubled in between: u = 0.4, 0.2, minimum 0.2."""
     x, u = ca.SX.sym("x"), ca.SX.sym("u")
     shared = {"x": x, "u": u, "ode": u, "duration": 1.0, "lagrange": {"control": u**2}}
     first, second = Stage(name="before", start=fixed(0.0), **shared), Stage(name="after", end=fixed(1.0), **shared)

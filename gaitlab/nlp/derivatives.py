@@ -38,31 +38,31 @@ class NLPDerivatives:
         return NLPDerivatives(gradient=gradient, jacobian=jacobian, hessian=hessian, mixed=mixed)
 
 
-def derivatives_from(
-    inputs: tuple[ca.MX | ca.SX, ca.MX | ca.SX, ca.MX | ca.SX, ca.MX | ca.SX], results: dict[str, list[ca.MX | ca.SX]]
-) -> NLPDerivatives:
+_POINT, _LAGRANGIAN = ["x", "p"], ["x", "p", "lam_f", "lam_g"]
+_GRADIENT, _JACOBIAN, _HESSIAN = ["f", "grad_f_x"], ["g", "jac_g_x"], ["triu_hess_gamma_x_x"]
+_MIXED = ["hess_gamma_x_p", "jac_g_p"]
+
+
+def derivatives_from(inputs: list[ca.MX], results: dict[str, list[ca.MX]]) -> NLPDerivatives:
     """Wrap expressions of (w, p, lam_f, lam_g), under the names of the fields of `NLPDerivatives`."""
-    w, p, lam_f, lam_g = inputs
-    point, lagrangian = ["x", "p"], ["x", "p", "lam_f", "lam_g"]
-    every = [w, p, lam_f, lam_g]
+    point = inputs[:2]
     return NLPDerivatives(
-        gradient=ca.Function("nlp_grad_f", [w, p], results["gradient"], point, ["f", "grad_f_x"]),
-        jacobian=ca.Function("nlp_jac_g", [w, p], results["jacobian"], point, ["g", "jac_g_x"]),
-        hessian=ca.Function("nlp_hess_l", every, results["hessian"], lagrangian, ["triu_hess_gamma_x_x"]),
-        mixed=ca.Function("nlp_mixed", every, results["mixed"], lagrangian, ["hess_gamma_x_p", "jac_g_p"]),
+        gradient=ca.Function("nlp_grad_f", point, results["gradient"], _POINT, _GRADIENT),
+        jacobian=ca.Function("nlp_jac_g", point, results["jacobian"], _POINT, _JACOBIAN),
+        hessian=ca.Function("nlp_hess_l", inputs, results["hessian"], _LAGRANGIAN, _HESSIAN),
+        mixed=ca.Function("nlp_mixed", inputs, results["mixed"], _LAGRANGIAN, _MIXED),
     )
 
 
 def differentiate(w: ca.SX, p: ca.SX, f: ca.SX, g: ca.SX) -> NLPDerivatives:
     """Differentiate the whole problem at once: simple, and slow where the problem is a long chain of stages."""
     lam_f, lam_g = ca.SX.sym("lam_f"), ca.SX.sym("lam_g", g.numel())
-    lagrangian_gradient = ca.gradient(lam_f * f + ca.dot(lam_g, g), w)
-    return derivatives_from(
-        (w, p, lam_f, lam_g),
-        {
-            "gradient": [f, ca.gradient(f, w)],
-            "jacobian": [g, ca.jacobian(g, w)],
-            "hessian": [ca.triu(ca.jacobian(lagrangian_gradient, w, {"symmetric": True}))],
-            "mixed": [ca.jacobian(lagrangian_gradient, p), ca.jacobian(g, p)],
-        },
+    slope = ca.gradient(lam_f * f + ca.dot(lam_g, g), w)
+    hessian = ca.triu(ca.jacobian(slope, w, {"symmetric": True}))
+    inputs, mixed = [w, p, lam_f, lam_g], [ca.jacobian(slope, p), ca.jacobian(g, p)]
+    return NLPDerivatives(
+        gradient=ca.Function("nlp_grad_f", [w, p], [f, ca.gradient(f, w)], _POINT, _GRADIENT),
+        jacobian=ca.Function("nlp_jac_g", [w, p], [g, ca.jacobian(g, w)], _POINT, _JACOBIAN),
+        hessian=ca.Function("nlp_hess_l", inputs, [hessian], _LAGRANGIAN, _HESSIAN),
+        mixed=ca.Function("nlp_mixed", inputs, mixed, _LAGRANGIAN, _MIXED),
     )

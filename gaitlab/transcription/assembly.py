@@ -81,7 +81,7 @@ class PieceDerivatives:
 
 
 def _entries(matrix: ca.SX) -> ca.SX:
-    return ca.vertcat(ca.SX(0, 1), *matrix.nonzeros())
+    return matrix.nz[:] if matrix.nnz() else ca.SX(0, 1)
 
 
 def _places(matrix: ca.SX) -> tuple[np.ndarray, np.ndarray]:
@@ -151,7 +151,7 @@ class Assembly:
             "hessian": [hessian.matrix()],
             "mixed": [mixed.matrix(), jacobian_p.matrix()],
         }
-        return derivatives_from((w, p, lam_f, lam_g), results)
+        return derivatives_from([w, p, lam_f, lam_g], results)
 
 
 class _Call:
@@ -165,10 +165,10 @@ class _Call:
         lam = ca.reshape(lam_g[rows.ravel().tolist()], rows.shape[1], piece.n)
         self.lagrangian = [*self.point, ca.repmat(lam_f, 1, piece.n), lam]
 
-    def at_point(self, function: ca.Function) -> tuple[ca.MX, ...]:
+    def at_point(self, function: ca.Function) -> list[ca.MX]:
         return function.map(self.n).call(self.point)
 
-    def of_lagrangian(self, function: ca.Function) -> tuple[ca.MX, ...]:
+    def of_lagrangian(self, function: ca.Function) -> list[ca.MX]:
         return function.map(self.n).call(self.lagrangian)
 
 

@@ -78,7 +78,7 @@ def fixed_values(bounds: Bounds, places: np.ndarray, names: Sequence[str], n_p: 
         value = bounds.lower[chosen][None]
         yield Piece(
             function=function, unknowns=places[chosen][None], data=NO_DATA, lower=value, upper=value,
-            labels=tuple(f"the fixed value of {names[i]}" for i in chosen),
+            labels=tuple(f"the fixed value of {names[i]}" for i in chosen.tolist()),
         )  # fmt: skip
 
 
@@ -120,11 +120,9 @@ class PointReader:
         layout, model = self.layout.stages[stage], self.models[stage]
         k, s = layout.grid.locate(time)
         d = layout.grid.data[k]
-        if s == 0.0:
-            return model.at_left(z, d, self.parameters)
-        if s == 1.0:
-            return model.at_right(z, d, self.parameters)
-        return model.inside(z, np.append(d, s), self.parameters)
+        read = model.at_left if s == 0.0 else model.at_right if s == 1.0 else model.inside
+        t, x, u = read.call([z, ca.SX(np.append(d, s)[: read.numel_in(1)]), self.parameters])
+        return t, x, u
 
 
 def point_expression(reader: PointReader, constraint: PointConstraint, w: ca.SX, q: ca.SX) -> ca.SX:

@@ -34,8 +34,8 @@ def with_points_and_fit(method):
     )
     stage = problem.stages[0]
     fit = Measurement(
-        name="fit", function=ca.vertcat(stage.x[0] * stage.u, stage.x[1] + problem.p[0]), times=np.array([0.0, 0.4, 1.0]),
-        values=np.ones((3, 2)), sd=np.full((3, 2), 0.5),
+        name="fit", function=ca.vertcat(stage.x[0] * stage.u, stage.x[1] + problem.p[0]),
+        times=np.array([0.0, 0.4, 1.0]), values=np.ones((3, 2)), sd=np.full((3, 2), 0.5),
     )  # fmt: skip
     return method.transcribe(problem, fit=(fit,))
 
