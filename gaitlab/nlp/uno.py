@@ -14,7 +14,7 @@ from .outcome import Outcome
 from .problem import NLP, Bounds
 from .solution import KKTConditions, NLPSolution
 from .solver import Multipliers
-from .uno_call import UnoAnswer, UnoCall, UnoOptions, UnoProblem, UnoRequest
+from .uno_call import UnoAnswer, UnoCall, UnoOptions, UnoProblem, UnoRequest, no_answer
 
 CHILD = "gaitlab.nlp.uno_child"
 
@@ -95,10 +95,8 @@ class PreparedUno:
             self._call(request) if self._call is not None else self._child.ask(request, self._settings.seconds)
         )
         if isinstance(answer, ChildFailure):
-            answer = UnoAnswer(
-                w=start, lam_w=np.zeros(w0.size), lam_g=np.zeros(n_g), f=float("nan"), status=answer.reason,
-                code=Outcome.TIME_LIMIT if answer.timed_out else Outcome.CRASHED, iterations=0,
-            )  # fmt: skip
+            code = Outcome.TIME_LIMIT if answer.timed_out else Outcome.CRASHED
+            answer = no_answer(request, answer.reason, code)
         return NLPSolution(
             w=answer.w,
             lam_w=answer.lam_w,

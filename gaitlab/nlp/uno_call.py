@@ -51,6 +51,19 @@ class UnoAnswer:
     iterations: int
 
 
+def no_answer(request: UnoRequest, status: str, code: str) -> UnoAnswer:
+    """The start of a solve that returned nothing."""
+    return UnoAnswer(
+        w=request.w0,
+        lam_w=np.zeros(request.lam_w0.size),
+        lam_g=np.zeros(request.lam_g0.size),
+        f=float("nan"),
+        status=status,
+        code=code,
+        iterations=0,
+    )
+
+
 class UnoCall:
     """Uno bound to one problem."""
 
@@ -61,12 +74,15 @@ class UnoCall:
         self._solver = ca.nlpsol("solver", "uno", {"x": w, "p": p, "f": f, "g": g}, problem.options)
 
     def __call__(self, request: UnoRequest) -> UnoAnswer:
-        """Solve once."""
+        """Solve once. An exception from Uno's inside is an answer: the start, and what was said."""
         bounds = request.bounds
-        out = self._solver(
-            x0=request.w0, p=request.p, lam_x0=request.lam_w0, lam_g0=request.lam_g0,
-            lbx=bounds.lbw, ubx=bounds.ubw, lbg=bounds.lbg, ubg=bounds.ubg,
-        )  # fmt: skip
+        try:
+            out = self._solver(
+                x0=request.w0, p=request.p, lam_x0=request.lam_w0, lam_g0=request.lam_g0,
+                lbx=bounds.lbw, ubx=bounds.ubw, lbg=bounds.lbg, ubg=bounds.ubg,
+            )  # fmt: skip
+        except RuntimeError as error:
+            return no_answer(request, str(error).strip().splitlines()[-1], "exception")
         stats = self._solver.stats()
         w, lam_w, lam_g = (np.asarray(out[key]).ravel() for key in ("x", "lam_x", "lam_g"))
         return UnoAnswer(
