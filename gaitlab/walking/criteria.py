@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ..errors import NotFound
+from ..ocp.extremal import power_of_p_norm
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,7 @@ PEAK_EXPONENT = 8
 
 def _peak(state: WalkState) -> ca.SX:
     # Scaled to 1 N*m/kg, a typical peak of the ankle moment in walking, so that the power neither over- nor underflows.
-    return ca.sum1((state.tau / state.mass) ** PEAK_EXPONENT)
+    return power_of_p_norm(state.tau / state.mass, PEAK_EXPONENT)
 
 
 ALL: Mapping[str, Criterion] = {
