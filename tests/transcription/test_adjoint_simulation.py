@@ -107,7 +107,7 @@ def dense_output(problem, spline, w):
 
 
 def test_extremal_values_against_another_integrator():
-    simulation = AdjointSimulation(problem=two_axis_robot(), steps_per_node=10)
+    simulation = AdjointSimulation(problem=two_axis_robot(), steps_per_node=20)
     w = np.random.default_rng(2).uniform(-1.0, 1.0, simulation.lbw.shape)
     point, h = simulation.evaluate(w), dense_output(simulation.problem, simulation.spline, w)
     inside = point.is_peak & (point.peaks.inverse_curvatures < 0.0)
