@@ -12,6 +12,7 @@ import typer
 from .. import __version__
 from ..errors import Cancelled, GaitlabError, NotConverged
 from .analyse import analyse
+from .benchmark import benchmark
 from .demo import demo
 from .demo_data import demo_data
 from .inspect import inspect
@@ -32,6 +33,7 @@ app = typer.Typer(
 for command in (analyse, inspect, view, schema, demo):
     app.command()(command)
 app.command(name="demo-data")(demo_data)
+app.add_typer(benchmark)
 
 
 @app.callback(invoke_without_command=True)

@@ -1,0 +1,8 @@
+"""`gaitlab benchmark`: the commands that measure the library on published problems."""
+
+import typer
+
+from .benchmark_ocp import ocp
+
+benchmark = typer.Typer(name="benchmark", help="Solve published problems and print the results beside those published.")
+benchmark.command()(ocp)

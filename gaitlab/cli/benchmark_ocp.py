@@ -1,0 +1,88 @@
+"""`gaitlab benchmark ocp`: the optimal control problems of Hatz (2014), forwards and backwards."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from ..benchmarks.ocp_collection import BENCHMARKS, benchmark
+from ..errors import NotConverged, OutputError
+from ..pipelines.benchmark_tables import (
+    FORWARD_COLUMNS,
+    INVERSE_COLUMNS,
+    as_csv,
+    forward_rows,
+    inverse_rows,
+    published_rows,
+)
+from ..pipelines.inverse_methods import METHODS
+from ..pipelines.ocp_benchmark import Comparison, compare
+from ..report.benchmark_figure import arm_postures, path_in_plane, time_courses
+
+
+def ocp(
+    problem: Annotated[
+        list[str] | None, typer.Option(help=f"Only this problem, repeatable: {', '.join(BENCHMARKS)}.")
+    ] = None,
+    method: Annotated[
+        list[str] | None, typer.Option(help=f"Only this method, repeatable: {', '.join(METHODS)}.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for tables (CSV) and figures (SVG); made if absent.")] = Path(
+        "gaitlab-benchmark"
+    ),
+) -> None:
+    """Solve the thesis's optimal control problems, confirm the optima, and estimate their weights by every method."""
+    chosen, comparisons = [benchmark(name) for name in problem or BENCHMARKS], list[Comparison]()
+    console = Console(width=None)
+    for each in chosen:
+        console.print(f"{each.title} ...", style="dim")
+        comparisons.append(compare(each, method or list(METHODS)))
+    forward, inverse = forward_rows(comparisons), inverse_rows(comparisons) + published_rows(comparisons)
+    console.print(_table("Optimal control", FORWARD_COLUMNS, forward))
+    console.print(_table("Inverse problems", INVERSE_COLUMNS, sorted(inverse, key=lambda row: row[0])))
+    files = {"optimal_control.csv": as_csv(FORWARD_COLUMNS, forward), "inverse.csv": as_csv(INVERSE_COLUMNS, inverse)}
+    for comparison in comparisons:
+        files |= _figures(comparison)
+    _write(files, out)
+    console.print(f"written to {out}: {', '.join(files)}")
+    _complain(comparisons)
+
+
+def _table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    table = Table(title=title, show_lines=True)
+    for column in columns:
+        table.add_column(column, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def _figures(comparison: Comparison) -> dict[str, str]:
+    forward, name = comparison.forward, comparison.forward.benchmark.name
+    optimum = forward.result.trajectory
+    estimates = {inverse.method: inverse.trajectory for inverse in comparison.inverses if inverse.result.converged}
+    title = forward.benchmark.title
+    files = {f"{name}.svg": time_courses(forward.benchmark.problem, optimum, estimates, comparison.measurements)}
+    if name.startswith("reeds-shepp"):
+        files[f"{name}-path.svg"] = path_in_plane(optimum, estimates, title)
+    if name.startswith("polar-robot"):
+        files[f"{name}-arm.svg"] = arm_postures(optimum, title)
+    return files
+
+
+def _write(files: dict[str, str], folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"cannot write into {folder}: {error.strerror}") from error
+
+
+def _complain(comparisons: Sequence[Comparison]) -> None:
+    failed = [each.forward.benchmark.name for each in comparisons if not each.forward.confirmed]
+    if failed:
+        raise NotConverged(f"optima that are not confirmed by the finer collocation: {', '.join(failed)}")
