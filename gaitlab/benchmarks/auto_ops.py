@@ -38,6 +38,10 @@ def field(t: ca.SX, x: ca.SX, p: ca.SX) -> ca.SX:
     return ca.vertcat((-p[3] * (x[0] ** 3 / 3.0 - x[0]) + exchange - x[1]) / p[0], x[0] - p[2], -exchange)
 
 
+def _standing_still(x: ca.SX, p: ca.SX) -> ca.SX:
+    return field(ca.SX(0), x, p)
+
+
 SEGMENT = Segment(name="orbit", mesh=Mesh.uniform(20), field=field, n_x=3, n_p=4)
 
 
@@ -56,7 +60,7 @@ def hopf_point() -> np.ndarray:
     """
     x = np.array([START[2], -START[3] * (START[2] ** 3 / 3.0 - START[2]), START[2]])
     problem = ZeroProblem().add_variables("x", x).add_variables("p", START)
-    problem = problem.add_zero("equilibrium", lambda x, p: field(ca.SX(0), x, p), "x", "p")
+    problem = problem.add_zero("equilibrium", _standing_still, "x", "p")
     system = ExtendedSystem(problem=problem.add_parameters(NAMES, "p"), fixed=FIXED)
     event = TestFunction(name="Hopf", function=lambda u: hopf_test(field_jacobian(field, u[:3], u[3:])), stops=True)
     method = PathFollowing(step=0.01, max_step=0.05)

@@ -20,9 +20,16 @@ MAXIMA = (np.sqrt(2.0), np.sqrt(3.0), 2.0, np.sqrt(5.0))
 def sphere() -> ZeroProblem:
     """The sphere with the monitors 'sum' and the four parameters."""
     problem = ZeroProblem().add_variables("x", np.ones(1)).add_variables("p", np.zeros(4))
-    problem = problem.add_zero("sphere", lambda x, p: ca.sumsqr(x) + ca.sumsqr(p) - 1.0, "x", "p")
-    problem = problem.add_monitor("sum", lambda x, p: x + ca.sum1(p), "x", "p")
+    problem = problem.add_zero("sphere", _on_sphere, "x", "p").add_monitor("sum", _sum, "x", "p")
     return problem.add_parameters(PARAMETERS, "p")
+
+
+def _on_sphere(x: ca.SX, p: ca.SX) -> ca.SX:
+    return ca.sumsqr(x) + ca.sumsqr(p) - 1.0
+
+
+def _sum(x: ca.SX, p: ca.SX) -> ca.SX:
+    return x + ca.sum1(p)
 
 
 def auto_opt() -> ExtremumProblem:

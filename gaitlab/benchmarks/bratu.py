@@ -20,8 +20,13 @@ CRITICAL = 3.513830719
 
 def exact_critical() -> float:
     """The fold from the formula: 8 (a / cosh a)^2 with a tanh a = 1."""
-    a, _ = brentq(lambda a: a * np.tanh(a) - 1.0, 0.5, 2.0, xtol=1e-15, full_output=True)
+    a, _ = brentq(_slope, 0.5, 2.0, xtol=1e-15, full_output=True)
     return float(8.0 * (a / np.cosh(a)) ** 2)
+
+
+def _slope(a: float) -> float:
+    """Zero where q has its maximum."""
+    return a * float(np.tanh(a)) - 1.0
 
 
 def exact_solution(t: np.ndarray, c: float) -> tuple[np.ndarray, float]:

@@ -60,13 +60,18 @@ def amplitude(w: float) -> float:
     return float(1.0 / np.hypot(1.0 - w**2, w))
 
 
+def _slope(w: float) -> float:
+    """Derivative of the amplitude."""
+    return (w - 2.0 * w**3) / ((1.0 - w**2) ** 2 + w**2) ** 1.5
+
+
+def _difference_of_slopes(w: float) -> float:
+    return _slope(w + DETUNING) - _slope(w)
+
+
 def largest_difference() -> tuple[float, float]:
     """Frequency w below resonance and largest amplitude(w + 0.1) - amplitude(w), from the derivative's zero."""
-
-    def slope(w: float) -> float:
-        return (w - 2.0 * w**3) / ((1.0 - w**2) ** 2 + w**2) ** 1.5
-
-    w, _ = brentq(lambda w: slope(w + DETUNING) - slope(w), 0.1, 0.5, xtol=1e-15, full_output=True)
+    w, _ = brentq(_difference_of_slopes, 0.1, 0.5, xtol=1e-15, full_output=True)
     return float(w), amplitude(w + DETUNING) - amplitude(w)
 
 
@@ -88,9 +93,17 @@ def amplitude_difference(n_intervals: int = 10) -> ExtremumProblem:
 def _glued(problem: ZeroProblem) -> ExtremumProblem:
     """Conditions between the orbits: one stiffness, two frequencies a fixed distance apart."""
     slow, fast = problem.indices("slow.orbit.p"), problem.indices("fast.orbit.p")
-    problem = problem.add_zero("same k", lambda a, b: a - b, slow[:1], fast[:1])
-    problem = problem.add_zero("detuning", lambda a, b: b - a - DETUNING, slow[2:], fast[2:])
+    problem = problem.add_zero("same k", _difference, slow[:1], fast[:1])
+    problem = problem.add_zero("detuning", _detuning, slow[2:], fast[2:])
     first = [problem.indices(f"{name}.orbit.x")[:1] for name in ("slow", "fast")]
-    problem = problem.add_monitor("difference", lambda a, b: b - a, *first)
+    problem = problem.add_monitor("difference", _difference, *first)
     problem = problem.add_parameters(("k", "w"), slow[[0, 2]])
     return ExtremumProblem(problem=problem, objective="difference", parameters=("w",), maximise=True)
+
+
+def _difference(a: ca.SX, b: ca.SX) -> ca.SX:
+    return b - a
+
+
+def _detuning(slow: ca.SX, fast: ca.SX) -> ca.SX:
+    return fast - slow - DETUNING

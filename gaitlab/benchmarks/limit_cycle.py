@@ -5,6 +5,8 @@ r^2 = a and the period 2 pi / (1 + a). The mean of x^2 over time is a / 2, large
 inequality p1 <= b < 1 the optimum is (1 - (b - 1)^2) / 2 at p = (b, -1/2), and its multiplier is 1 - b.
 """
 
+from collections.abc import Callable
+
 import casadi as ca
 import numpy as np
 
@@ -41,9 +43,13 @@ def cycle(mesh: Mesh, p: np.ndarray) -> tuple[Segment, ZeroProblem]:
     return segment, problem.add_parameters(PARAMETERS, "orbit.p")
 
 
+def _above(bound: float) -> Callable[[ca.SX], ca.SX]:
+    return lambda p: p - bound
+
+
 def limit_cycle(n_intervals: int = 10, bound: float | None = None) -> ExtremumProblem:
     """The largest mean of x^2, with the inequality p1 <= bound where one is given."""
     _, problem = cycle(Mesh.uniform(n_intervals), START)
     if bound is not None:
-        problem = problem.add_inequality("limit", lambda p: p[0] - bound, "orbit.p")
+        problem = problem.add_inequality("limit", _above(bound), problem.indices("orbit.p")[:1])
     return ExtremumProblem(problem=problem, objective="mean square", parameters=PARAMETERS, maximise=True)

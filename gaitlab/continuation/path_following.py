@@ -157,7 +157,10 @@ def tangent_at(system: PathSystem, x: np.ndarray, along: np.ndarray) -> np.ndarr
     right = np.zeros(len(x))
     right[-1] = 1.0
     t = solve(bordered(system.jacobian(x), system.weights * along), right)
-    return None if t is None else t / np.sqrt(np.sum(system.weights * t**2))
+    if t is None:
+        return None
+    t = t / np.max(np.abs(t))  # Almost singular matrices give numbers whose squares are infinite.
+    return t / np.sqrt(np.sum(system.weights * t**2))
 
 
 def branch_direction(system: PathSystem, point: LocatedPoint) -> np.ndarray | None:

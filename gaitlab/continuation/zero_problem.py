@@ -119,8 +119,14 @@ class ZeroProblem:
     ) -> StagedFunction:
         groups = [self.indices(w) for w in where]
         symbols = [ca.SX.sym(f"v{i}", len(group)) for i, group in enumerate(groups)]
-        z, r = ca.vertcat(*symbols), ca.SX(expression(*symbols))
-        block = BlockFunction(z, ca.vec(r))
+        try:
+            r = ca.vec(ca.SX(expression(*symbols)))
+        except (TypeError, NotImplementedError, RuntimeError, IndexError) as error:
+            sizes = [len(group) for group in groups]
+            raise ProblemError(
+                f"stage '{name}' is no CasADi expression of vectors of sizes {sizes}: {error}"
+            ) from error
+        block = BlockFunction(ca.vertcat(*symbols), r)
         return StagedFunction(
             name=name,
             block=block,

@@ -65,6 +65,11 @@ def test_unknown_variable():
         (lambda p: p.add_zero("circle", lambda x: x, "x"), "already"),
         (lambda p: p.add_monitor("m", lambda x: x, "x"), "one number, got 2"),
         (lambda p: p.add_zero("f", lambda x: x, np.array([5])), "within 0 and 1"),
+        (
+            lambda p: p.add_zero("f", lambda x: x[3], "x"),
+            r"stage 'f' is no CasADi expression of vectors of sizes \[2\]",
+        ),
+        (lambda p: p.add_zero("f", lambda x: "text", "x"), "stage 'f' is no CasADi expression"),
         (lambda p: p.add_parameters(("only",), "x"), "2 parameters"),
         (lambda p: p.embed("a", circle()).embed("a", circle()), "already"),
         (lambda p: p.starting_at(np.zeros(3)), "shape"),
