@@ -97,7 +97,7 @@ class LowerLevel:
 
     def start(self, w0: np.ndarray, p: np.ndarray) -> Response:
         """Solve from a cold start w0, shape (n_w,), for p, shape (n_p,)."""
-        return self._response(self._polished(self._counted(self._solver.solve(w0, p)), p), p)
+        return self.response(self._polished(self._counted(self._solver.solve(w0, p)), p), p)
 
     def respond(self, p: np.ndarray, near: Response, slopes: Slopes | None = None) -> Response:
         """Solve for p, shape (n_p,), from a solution nearby; `slopes` at that solution give a better start."""
@@ -110,7 +110,7 @@ class LowerLevel:
         if not solution.is_optimal(ACCEPT * near.size):
             cold = self._polished(self._counted(self._solver.solve(near.solution.w, p)), p)
             solution = solution if cold.residuals.max() > solution.residuals.max() else cold
-        return self._response(solution, p)
+        return self.response(solution, p)
 
     def _polished(self, solution: NLPSolution, p: np.ndarray) -> NLPSolution:
         """Exact activity: interior-point methods end a little inside, or outside, of large bounds."""
@@ -163,7 +163,8 @@ class LowerLevel:
         self.iterations += solution.iterations
         return solution
 
-    def _response(self, solution: NLPSolution, p: np.ndarray) -> Response:
+    def response(self, solution: NLPSolution, p: np.ndarray) -> Response:
+        """Evaluate the upper level at a solution found elsewhere, for p, shape (n_p,)."""
         residual, upper = (np.asarray(out).ravel() for out in self._upper_level(solution.w, p))
         gradient = np.asarray(self._derivatives.gradient(solution.w, p)[1].full())
         size = 1.0 + float(np.max(np.abs(gradient), initial=0.0))

@@ -1,0 +1,83 @@
+"""The upper level as a function of the free parameters alone: every value is a solution of the lower level."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .inverse_finish import Stop, finish, largest_upper_violation, unsolved
+from .inverse_problem import InverseProblem
+from .inverse_result import InverseResult, InverseStatus
+from .lower_level import LowerLevel, LowerSettings, Response
+from .parameter_set import ParameterSet
+
+
+@dataclass
+class ReducedObjective:
+    """Residuals of the upper level over free parameters, with the best point seen."""
+
+    lower: LowerLevel
+    best: Response
+    """Lowest objective among solved lower levels so far."""
+    penalty: float = 1e3
+    """Weight of violated upper-level constraints in the extra residuals."""
+    evaluations: int = 0
+    failures: int = 0
+    last_failure: str = ""
+    allowed: ParameterSet = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.allowed = ParameterSet(self.lower.problem)
+
+    def respond(self, y: np.ndarray) -> Response | None:
+        """Response for free parameters y, shape (n_y,); None where the lower level has no solution."""
+        self.evaluations += 1
+        response = self.lower.respond(self.allowed.full(y), self.best)
+        if not response.solved:
+            self.failures += 1
+            self.last_failure = self.lower.failure(response)
+            return None
+        if self.cost(response) < self.cost(self.best):
+            self.best = response
+        return response
+
+    def residual(self, response: Response) -> np.ndarray:
+        """Residuals with those of violated upper-level constraints appended, shape (n_m + n_u,)."""
+        problem = self.lower.problem
+        miss = np.maximum(np.maximum(problem.lbu - response.upper, response.upper - problem.ubu), 0.0)
+        return np.concatenate([response.residual, self.penalty * miss])
+
+    def cost(self, response: Response) -> float:
+        """Half the sum of squares of `residual`."""
+        r = self.residual(response)
+        return 0.5 * float(r @ r)
+
+
+def begin(
+    problem: InverseProblem, settings: LowerSettings, w0: np.ndarray, p0: np.ndarray
+) -> ReducedObjective | InverseResult:
+    """First response from w0, shape (n_w,), and p0, shape (n_p,), or the result that says why there is none."""
+    began = time.perf_counter()
+    lower, p = LowerLevel(problem, settings), problem.start(p0)
+    invalid = lower.invalid(w0, p)
+    response = lower.start(w0, p)
+    if response.solved:
+        return ReducedObjective(lower, response)
+    stop = unsolved(lower, response, 0)
+    if invalid is not None:
+        stop = Stop(status=InverseStatus.INVALID_NUMBER, reason=invalid, iterations=0)
+    return finish(lower, response, stop, began)
+
+
+def conclude(objective: ReducedObjective, stop: Stop, began: float) -> InverseResult:
+    """Result of the best point; a claimed convergence is checked against the upper level's constraints."""
+    violation, sentence = largest_upper_violation(objective.lower.problem, objective.best.upper)
+    if stop.status is InverseStatus.CONVERGED and violation > 1e-4:
+        stop = Stop(status=InverseStatus.INFEASIBLE, reason=sentence, iterations=stop.iterations)
+    elif stop.status is InverseStatus.CONVERGED and not objective.lower.is_minimum(objective.best):
+        reason = "the lower level's point is stationary, but the second-order test for a minimum fails"
+        stop = Stop(status=InverseStatus.LOWER_LEVEL_FAILED, reason=reason, iterations=stop.iterations)
+    elif objective.failures and stop.status is not InverseStatus.CONVERGED:
+        reason = f"{stop.reason}; {objective.failures} points without a solution, last: {objective.last_failure}"
+        stop = Stop(status=stop.status, reason=reason, iterations=stop.iterations)
+    return finish(objective.lower, objective.best, stop, began)
