@@ -36,7 +36,7 @@ def ocp(
 ) -> None:
     """Solve the thesis's optimal control problems, confirm the optima, and estimate their weights by every method."""
     chosen, comparisons = [benchmark(name) for name in problem or BENCHMARKS], list[Comparison]()
-    console = Console(width=None)
+    console = Console()
     for each in chosen:
         console.print(f"{each.title} ...", style="dim")
         comparisons.append(compare(each, method or list(METHODS)))
@@ -62,14 +62,14 @@ def _table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) ->
 
 def _figures(comparison: Comparison) -> dict[str, str]:
     forward, name = comparison.forward, comparison.forward.benchmark.name
-    optimum = forward.result.trajectory
-    estimates = {inverse.method: inverse.trajectory for inverse in comparison.inverses if inverse.result.converged}
+    optimum = forward.course
+    estimates = {inverse.method: inverse.course for inverse in comparison.inverses if inverse.result.converged}
     title = forward.benchmark.title
     files = {f"{name}.svg": time_courses(forward.benchmark.problem, optimum, estimates, comparison.measurements)}
     if name.startswith("reeds-shepp"):
         files[f"{name}-path.svg"] = path_in_plane(optimum, estimates, title)
     if name.startswith("polar-robot"):
-        files[f"{name}-arm.svg"] = arm_postures(optimum, title)
+        files[f"{name}-arm.svg"] = arm_postures(forward.result.trajectory, title)
     return files
 
 

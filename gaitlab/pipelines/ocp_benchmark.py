@@ -18,6 +18,8 @@ from ..transcription.transcribed import Transcribed
 from .inverse_methods import inverse_method
 
 SOLVE = Solve(solver=Ipopt(tol=1e-10))
+SAMPLES = 8
+"""Per interval, of trajectories to draw."""
 AGREEMENT = 1e-5
 """Relative difference up to which the finer collocation confirms an optimum."""
 
@@ -33,6 +35,11 @@ class Forward:
     """Of the solve [s]."""
     finer: OptimalControl
     """The same problem by an independent, finer collocation."""
+
+    @property
+    def course(self) -> Trajectory:
+        """The optimum, sampled finely enough to draw."""
+        return self.transcribed.trajectory(self.result.solution.w, self.benchmark.truth, SAMPLES)
 
     @property
     def difference(self) -> float:
@@ -53,7 +60,8 @@ class Inverse:
 
     method: str
     result: InverseResult
-    trajectory: Trajectory
+    course: Trajectory
+    """The estimate, sampled finely enough to draw."""
     cold_seconds: float
     """Of the first solve [s]."""
     warm_seconds: float
@@ -93,7 +101,7 @@ def solve_forward(benchmark: Benchmark) -> Forward:
     began = time.perf_counter()
     result = SOLVE(transcribed, benchmark.start, benchmark.truth)
     seconds = time.perf_counter() - began
-    near = transcribed.trajectory(result.solution.w, benchmark.truth, per_interval=8)
+    near = transcribed.trajectory(result.solution.w, benchmark.truth, SAMPLES)
     finer = SOLVE(benchmark.finer(), near, benchmark.truth)
     return Forward(benchmark=benchmark, transcribed=transcribed, result=result, seconds=seconds, finer=finer)
 
@@ -126,7 +134,7 @@ def solve_inverse(forward: Forward, measurements: Sequence[Measurement], methods
         yield Inverse(
             method=name,
             result=result,
-            trajectory=forward.transcribed.trajectory(result.w, result.p),
+            course=forward.transcribed.trajectory(result.w, result.p, SAMPLES),
             cold_seconds=cold,
             warm_seconds=warm,
         )

@@ -4,6 +4,7 @@ import io
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
@@ -99,5 +100,6 @@ def _circles(axes: Axes, i: int, n_x: int, measured: Sequence[Measurement]) -> N
 
 def _svg(figure: Figure) -> str:
     text = io.StringIO()
-    FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
+    with rc_context(_SVG):
+        FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
     return text.getvalue()
