@@ -70,14 +70,15 @@ def order_of_optima() -> Iterator[Row]:
 
 
 def _timed(problem: ExtremumProblem) -> tuple[Extremum, float]:
-    begin = time.perf_counter()
-    return METHOD.solve(problem), time.perf_counter() - begin
+    """Processor time: it does not count what else the machine does."""
+    begin = time.process_time()
+    return METHOD.solve(problem), time.process_time() - begin
 
 
 def _certificate(found: Extremum, seconds: float, subject: str) -> Iterator[Row]:
     yield _row("not converged", float(not found.converged), "<= 0", subject)
     yield _row("residual of the optimality system", found.residual, "<= 1e-8", subject)
-    yield Row(quantity="time", value=seconds, limit="", unit="s", subject=subject)
+    yield Row(quantity="processor time", value=seconds, limit="", unit="s", subject=subject)
 
 
 def _row(quantity: str, value: float, limit: str, subject: str) -> Row:
