@@ -7,7 +7,7 @@ gradients at earlier points make a cutting-plane model,
 
     \min_{v, d} \; v + \tfrac{1}{2 t} |d|^2 \quad \text{s.t.} \quad v \ge g_i^T d - \beta_i, \; y + d \in Y,
 
-with linearisation errors lifted to :math:`\beta_i = \max(\alpha_i, c_0 |y - y_i|^2)` where F is not convex (7.19).
+with linearisation errors lifted to :math:`\beta_i = \max(|\alpha_i|, c_0 |y - y_i|^2)` where F is not convex (7.19).
 Unlike the thesis's, the set Y of bounds and simplex is part of the quadratic program, and gradients come from the
 lower level's KKT system. Parameters are scaled by their size.
 """
@@ -42,10 +42,12 @@ class Bundle:
     """m_3 of (7.22)."""
     shrink: float = 0.3
     """Factor of t, rho."""
-    convexity: float = 1e-4
-    """c_0 of (7.19)."""
-    tol: float = 1e-8
-    """Converged when the model promises less, relative to 1 + F."""
+    convexity: float = 0.1
+    """c_0 of (7.19), relative to 1 + F."""
+    tol: float = 1e-6
+    """epsilon of (7.21) for the linearisation errors, relative to 1 + F."""
+    tol_gradient: float = 1e-4
+    """epsilon of (7.21) for the gradient per relative change of the parameters, relative to 1 + F."""
     max_iter: int = 500
     seconds: float = 600.0
     """Wall time after which the search stops [s]."""
@@ -94,8 +96,8 @@ class _Search:
             if step is None:
                 return self._stop(InverseStatus.STALLED, "the model has no minimum within the bounds", iteration)
             v, d = step
-            if -v <= self._method.tol * (1.0 + abs(centre.f)):
-                return self._stop(InverseStatus.CONVERGED, "the cutting planes promise no decrease", iteration)
+            if self._is_stationary(centre, v, d):
+                return self._stop(InverseStatus.CONVERGED, "the aggregate gradient vanishes", iteration)
             trial = self._evaluate(centre.x + d)
             if trial is None or shrinks > 60:
                 self._t *= self._method.shrink
@@ -115,6 +117,12 @@ class _Search:
             cuts = self._kept(centre, [*cuts, trial])
         return self._stop(InverseStatus.ITERATION_LIMIT, "iteration limit reached", self._method.max_iter)
 
+    def _is_stationary(self, centre: _Cut, v: float, d: np.ndarray) -> bool:
+        """Criterion (7.21): aggregate gradient -d / t, and what the model promises beyond it."""
+        aggregate, scale = float(np.linalg.norm(d)) / self._t, 1.0 + abs(centre.f)
+        error = -v - float(d @ d) / self._t
+        return aggregate <= self._method.tol_gradient * scale and error <= self._method.tol * scale
+
     def _is_informative(self, centre: _Cut, trial: _Cut, d: np.ndarray, v: float) -> bool:
         """Conditions NS(ii) and NS(iii) of (7.22)."""
         error = self._error(centre, trial)
@@ -122,7 +130,8 @@ class _Search:
 
     def _error(self, centre: _Cut, cut: _Cut) -> float:
         gap = centre.x - cut.x
-        return max(centre.f - (cut.f + float(cut.g @ gap)), self._method.convexity * float(gap @ gap), 0.0)
+        error = centre.f - (cut.f + float(cut.g @ gap))
+        return max(abs(error), self._method.convexity * (1.0 + abs(centre.f)) * float(gap @ gap))
 
     def _kept(self, centre: _Cut, cuts: list[_Cut]) -> list[_Cut]:
         if len(cuts) <= self._method.size:
@@ -140,7 +149,7 @@ class _Search:
         slopes = np.array([cut.g for cut in cuts])
         unit = max(float(np.linalg.norm(centre.g)), 1e-12)
         # v is measured in units of the gradient and d in units of t, so that the program is well scaled.
-        hessian = np.diag(np.append(1e-12, np.ones(n)))
+        hessian = np.diag(np.append(1e-9, np.ones(n)))
         weights = self._size * allowed.simplex
         matrix = np.hstack([np.ones((len(cuts), 1)), -slopes / unit])
         rows, lower, upper = [matrix], [-errors / (unit**2 * self._t)], [np.full(len(cuts), np.inf)]

@@ -61,6 +61,7 @@ class _Search:
         if allowed.simplex.any():
             self._kept[np.flatnonzero(allowed.simplex)[-1]] = False
         y = objective.best.p[allowed.index]
+        self._total = float(y[allowed.simplex].sum())
         self._size = np.maximum(np.abs(y[self._kept]), 1e-2)
         self._x0 = y[self._kept] / self._size
 
@@ -102,7 +103,7 @@ class _Search:
         allowed = self._objective.allowed
         y = np.zeros(allowed.n_y)
         y[self._kept] = x * self._size
-        y[~self._kept] = 1.0 - y[self._kept & allowed.simplex].sum()
+        y[~self._kept] = self._total - y[self._kept & allowed.simplex].sum()
         return np.clip(y, allowed.lower, allowed.upper)
 
     def _simplex(self, x: np.ndarray) -> np.ndarray:
@@ -111,7 +112,7 @@ class _Search:
         normal = np.where(allowed.simplex, 1.0, 0.0)[self._kept] * self._size
         total = float(normal @ x)
         last = ~self._kept
-        nearest = float(np.clip(total, 1.0 - allowed.upper[last][0], 1.0 - allowed.lower[last][0]))
+        nearest = float(np.clip(total, self._total - allowed.upper[last][0], self._total - allowed.lower[last][0]))
         return x + normal * (nearest - total) / float(normal @ normal)
 
 

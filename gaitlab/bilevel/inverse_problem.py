@@ -41,7 +41,7 @@ class InverseProblem:
     p_nominal: np.ndarray
     """Values of the entries that are not free, and the usual start of the others, shape (n_p,)."""
     simplex: tuple[int, ...] = ()
-    """Indices of free entries of p whose sum is one (criterion weights)."""
+    """Indices of entries of p whose sum is one (criterion weights); at least one of them is free."""
     upper: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     """Upper-level constraint functions of (nlp.w, nlp.p), shape (n_u, 1)."""
     lbu: np.ndarray = field(default_factory=lambda: _NO_CONSTRAINTS)
@@ -82,8 +82,8 @@ class InverseProblem:
         self._check_finite("p0", p0)
         p = np.where(self.free, np.clip(p0, self.lbp, self.ubp), self.p_nominal)
         if self.simplex:
-            chosen = list(self.simplex)
-            p[chosen] = _project_on_simplex(p0[chosen], self.lbp[chosen], self.ubp[chosen])
+            chosen, total = self._free_weights()
+            p[chosen] = _project_on_simplex(p0[chosen], (self.lbp[chosen], self.ubp[chosen]), total)
         return p
 
     def _check_shapes(self) -> None:
@@ -122,13 +122,18 @@ class InverseProblem:
     def _check_simplex(self) -> None:
         if not self.simplex:
             return
-        chosen = list(self.simplex)
-        wrong = [i for i in chosen if not 0 <= i < self.n_p or not self.free[i]]
-        if wrong or len(set(chosen)) != len(chosen):
-            raise ProblemError(f"simplex must list different free entries of p, got {self.simplex}")
+        inside = all(0 <= i < self.n_p for i in self.simplex) and len(set(self.simplex)) == len(self.simplex)
+        if not inside or not any(self.free[i] for i in self.simplex):
+            raise ProblemError(f"simplex must list different entries of p, one of them free, got {self.simplex}")
+        chosen, total = self._free_weights()
         lowest, highest = self.lbp[chosen].sum(), self.ubp[chosen].sum()
-        if not lowest <= 1.0 <= highest:
-            raise ProblemError(f"the bounds of the weights sum to {lowest:g}..{highest:g}: they cannot sum to one")
+        if not lowest <= total <= highest:
+            raise ProblemError(f"the bounds of the weights sum to {lowest:g}..{highest:g}: they cannot sum to {total:g}")
+
+    def _free_weights(self) -> tuple[list[int], float]:
+        """Free entries of the simplex, and what is left of one for them."""
+        fixed = [i for i in self.simplex if not self.free[i]]
+        return [i for i in self.simplex if self.free[i]], 1.0 - float(self.p_nominal[fixed].sum())
 
     def _check_finite(self, name: str, values: np.ndarray) -> None:
         bad = np.flatnonzero(~np.isfinite(values))
@@ -136,15 +141,15 @@ class InverseProblem:
             raise ProblemError(f"{name} of {self.parameter_name(bad[0])} is {values[bad[0]]}: give a finite number")
 
 
-def _project_on_simplex(x: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    # The Euclidean projection is clip(x - t) with the t that makes the sum one; the sum falls monotonically in t.
-    bounds = np.concatenate([lower, upper, np.ones(1)])
+def _project_on_simplex(x: np.ndarray, limits: tuple[np.ndarray, np.ndarray], total: float) -> np.ndarray:
+    # The Euclidean projection is clip(x - t) with the t that makes the sum right; the sum falls monotonically in t.
+    bounds = np.concatenate([*limits, np.ones(1)])
     span = float(np.max(np.abs(x)) + np.max(np.abs(bounds[np.isfinite(bounds)]))) + 1.0
     low, high = -span, span
     for _ in range(200):
         middle = 0.5 * (low + high)
-        if np.clip(x - middle, lower, upper).sum() > 1.0:
+        if np.clip(x - middle, *limits).sum() > total:
             low = middle
         else:
             high = middle
-    return np.clip(x - 0.5 * (low + high), lower, upper)
+    return np.clip(x - 0.5 * (low + high), *limits)

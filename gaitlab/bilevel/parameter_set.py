@@ -67,8 +67,9 @@ def solve_quadratic(
     scale = 1.0 / np.sqrt(np.maximum(np.diag(hessian), 1e-12 * max(float(np.diag(hessian).max()), 1e-300)))
     matrix = rows.matrix * scale
     sparsity = {"h": ca.Sparsity.dense(*hessian.shape), "a": ca.Sparsity.dense(*matrix.shape)}
-    options = {"print_iter": False, "print_header": False, "print_info": False, "error_on_fail": False}
-    solver = ca.conic("step", "qrqp", sparsity, options)
+    # A dual active-set method (Arnström, Bemporad, Axehill 2022); its defaults are too coarse for last steps.
+    options = {"error_on_fail": False, "daqp": {"primal_tol": 1e-10, "dual_tol": 1e-12, "zero_tol": 1e-14}}
+    solver = ca.conic("step", "daqp", sparsity, options)
     found = solver(
         h=hessian * np.outer(scale, scale), g=gradient * scale, a=matrix,
         lba=rows.lower, uba=rows.upper, lbx=bounds[0] / scale, ubx=bounds[1] / scale,

@@ -52,7 +52,10 @@ def parameter_uncertainty(
     known = moves[:, ~weak] / strengths[~weak]
     covariance, identifiable = np.zeros((n_p, n_p)), np.ones(n_p, dtype=bool)
     covariance[np.ix_(free, free)] = known @ known.T
-    lost = free[np.any(np.abs(moves[:, weak]) > 1e-3 * size[:, None], axis=1)]
+    # A parameter at its bound that does not change the fit has not been pushed there by the data.
+    effect = np.linalg.norm(jacobian[:, free], axis=0) * size
+    silent = effect <= WEAKEST * max(float(effect.max(initial=0.0)), np.finfo(float).tiny)
+    lost = free[np.any(np.abs(moves[:, weak]) > 1e-3 * size[:, None], axis=1) | silent]
     covariance[lost, lost] = np.inf
     identifiable[lost] = False
     blind = np.zeros((n_p, int(weak.sum())))

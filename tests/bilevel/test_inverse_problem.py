@@ -47,13 +47,18 @@ def test_start_keeps_fixed_entries_and_bounds():
         ({"p_nominal": np.array([1.0, np.nan, 0.0])}, r"p\[1\] is nan"),
         ({"lbp": np.array([0.0, 2.0, 0.0]), "names": ("speed", "effort", "hip")}, "bounds of effort cross"),
         ({"simplex": (0, 0)}, "simplex must list different"),
-        ({"ubp": np.full(3, 0.2)}, "cannot sum to one"),
+        ({"ubp": np.full(3, 0.2)}, "cannot sum to 1"),
         ({"upper": ca.SX(1, 1), "lbu": np.ones(1), "ubu": np.zeros(1)}, "upper-level constraint 0"),
     ],
 )
 def test_malformed_problems_are_refused_by_name(changes, sentence):
     with pytest.raises(ProblemError, match=sentence):
         weighted_mean(**changes)
+
+
+def test_fixed_weights_leave_the_rest_of_one():
+    problem = weighted_mean(free=np.array([False, True, True]), p_nominal=np.array([0.4, 0.3, 0.3]))
+    np.testing.assert_allclose(problem.start(np.array([0.0, 0.5, 0.2])), [0.4, 0.45, 0.15], atol=1e-12)
 
 
 def test_a_start_that_is_no_number_is_refused():
