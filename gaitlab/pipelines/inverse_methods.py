@@ -5,10 +5,19 @@ from typing import Protocol
 
 import numpy as np
 
+from ..bilevel.bundle import Bundle
+from ..bilevel.derivative_free import DerivativeFree
 from ..bilevel.gauss_newton import GaussNewton
 from ..bilevel.inverse_problem import InverseProblem
 from ..bilevel.inverse_result import InverseResult
+from ..bilevel.kkt_reformulation import KKTReformulation
 from ..errors import NotFound
+from ..nlp.complementarity.lifting import LiftingL1, LiftingL2
+from ..nlp.complementarity.penalty import Penalty
+from ..nlp.complementarity.relaxation import Relaxation
+from ..nlp.complementarity.unlifted import Unlifted
+from ..nlp.ipopt import Ipopt
+from ..nlp.uno import Uno
 
 
 class InverseMethod(Protocol):
@@ -19,8 +28,27 @@ class InverseMethod(Protocol):
         ...
 
 
+TREATMENTS = {
+    "unlifted": Unlifted,
+    "lifting-l1": LiftingL1,
+    "lifting-l2": LiftingL2,
+    "penalty": Penalty,
+    "relaxation": Relaxation,
+}
+"""Of the complementarity of the all-at-once approach."""
+
+SOLVERS = {"ipopt": Ipopt(seconds=60.0), "filtersqp": Uno(seconds=60.0)}
+"""Of its subproblems, with their limits of time [s]."""
+
 METHODS: Mapping[str, InverseMethod] = {
     "gauss-newton": GaussNewton(),
+    "derivative-free": DerivativeFree(),
+    "bundle": Bundle(),
+    **{
+        f"{name}-{solver}": KKTReformulation(method=treatment(solver=SOLVERS[solver]))
+        for solver in SOLVERS
+        for name, treatment in TREATMENTS.items()
+    },
 }
 """The first is the fast path."""
 

@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
@@ -17,7 +18,7 @@ from ..ocp.trajectory import StageTrajectory, Trajectory
 MEASURED, OPTIMAL = "0.45", "black"
 COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown", "tab:pink", "tab:olive")
 # matplotlib writes random identifiers and the date unless told otherwise; the same input must give the same bytes.
-_SVG = {"svg.hashsalt": "gaitlab", "svg.fonttype": "none"}
+_SVG: dict[Any, str] = {"svg.hashsalt": "gaitlab", "svg.fonttype": "none"}
 
 
 def time_courses(
