@@ -6,6 +6,7 @@
   + InvalidSubject      body measurements are missing or impossible
   + NotConverged        a computation that was asked for did not reach its certificate
   + Cancelled           the caller asked to stop
+  + WorkerLost          a process that computed for us ended without a result
   + OutputError         a result cannot be written
   + NotFound            no stored object has this identifier
 """
@@ -35,6 +36,10 @@ class NotConverged(GaitlabError):
 
 class Cancelled(GaitlabError):
     """The caller asked to stop."""
+
+
+class WorkerLost(GaitlabError):
+    """A computing process ended without a result."""
 
 
 class OutputError(GaitlabError):

@@ -32,6 +32,7 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     weights: Annotated[bool, typer.Option(help="Compute the walk and its weights.")] = True,
     trunk_joint: Annotated[bool, typer.Option(help="Give the trunk a joint of its own on the pelvis.")] = False,
     seed: Annotated[int, typer.Option(help="Seed of everything random.", min=0)] = 0,
+    processes: Annotated[int, typer.Option(help="Processes to compute with; 0: all processors.", min=0)] = 0,
     redetect_events: Annotated[bool, typer.Option(help="Detect events although the file has some.")] = False,
     file_offsets: Annotated[
         bool, typer.Option(help="Use the static offsets stored in the file, not those computed.")
@@ -44,6 +45,7 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
         criteria=tuple(name.strip() for name in criteria.split(",") if name.strip()),
         weights=weights,
         seed=seed,
+        processes=processes,
         trunk_joint=trunk_joint,
         redetect_events=redetect_events,
         static_offsets="file" if file_offsets else "computed",

@@ -35,7 +35,7 @@ class BandedLU:
         return np.asarray(x)[self.order]
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def kkt_assembly(structure: SparseStructure) -> "KKTAssembly":
     """The assembly of a structure; a structure is the same object in all problems that share it."""
     return KKTAssembly(structure)

@@ -4,16 +4,19 @@ Expressions hold no numbers of a subject or a trial, so the compiled code is cac
 serves every patient. Without a C compiler CasADi's virtual machine evaluates the same expressions.
 """
 
+import contextlib
 import hashlib
+import inspect
 import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import casadi as ca
+import msgspec
 import numpy as np
 
 from ..errors import ProblemError
@@ -30,17 +33,72 @@ def compile_functions(functions: Sequence[ca.Function], name: str) -> dict[str, 
 
     The result maps function names to functions. `GAITLAB_COMPILER` names the compiler; empty means: do not compile.
     """
-    compiler = os.environ.get("GAITLAB_COMPILER", "cc")
-    if not compiler or shutil.which(compiler) is None:
-        return {f.name(): f for f in functions}
+    return _compile(functions, name)[0]
+
+
+def compile_derived(
+    expressions: ca.Function, build: Callable[[], Sequence[ca.Function]], name: str
+) -> dict[str, ca.Function]:
+    """Compile `build()`, functions that depend on nothing but `expressions` and the module that defines `build`.
+
+    Deriving and printing long expressions takes seconds; they are skipped where the library of the same expressions
+    is in the cache already. Otherwise as `compile_functions`.
+    """
+    text = expressions.serialize() + inspect.getsource(inspect.getmodule(build) or build)
+    note = cache_directory() / f"{name}_{_key(text)}.json"
+    if _compiler() is not None:
+        known = _read_note(note)
+        loaded = _load(known.names, note.with_name(known.library)) if known is not None else None
+        if loaded is not None:
+            return loaded
+    functions, library = _compile(build(), name)
+    if library is not None:
+        _write_note(note, _Note(names=list(functions), library=library.name))
+    return functions
+
+
+class _Note(msgspec.Struct):
+    """Which library holds the functions derived from some expressions."""
+
+    names: list[str]
+    library: str
+
+
+def _read_note(path: Path) -> _Note | None:
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=_Note)
+    except (OSError, msgspec.DecodeError):
+        return None
+
+
+def _write_note(path: Path, note: _Note) -> None:
+    with contextlib.suppress(OSError), tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+        file.write(msgspec.json.encode(note))
+        file.close()
+        Path(file.name).replace(path)
+
+
+def _compile(functions: Sequence[ca.Function], name: str) -> tuple[dict[str, ca.Function], Path | None]:
+    """The functions, and the library that they were loaded from if they are compiled."""
+    interpreted = {f.name(): f for f in functions}
+    compiler = _compiler()
+    if compiler is None:
+        return interpreted, None
     source = _source(functions, name)
-    key = hashlib.sha256(source.encode() + ca.CasadiMeta.version().encode()).hexdigest()[:20]
-    library = cache_directory() / f"{name}_{key}.so"
-    names = [f.name() for f in functions]
-    loaded = _load(names, library)
+    library = cache_directory() / f"{name}_{_key(source)}.so"
+    loaded = _load(list(interpreted), library)
     if loaded is None and _build(compiler, source, library):
-        loaded = _load(names, library)
-    return loaded or {f.name(): f for f in functions}
+        loaded = _load(list(interpreted), library)
+    return (interpreted, None) if loaded is None else (loaded, library)
+
+
+def _compiler() -> str | None:
+    compiler = os.environ.get("GAITLAB_COMPILER", "cc")
+    return compiler if compiler and shutil.which(compiler) is not None else None
+
+
+def _key(text: str) -> str:
+    return hashlib.sha256(text.encode() + ca.CasadiMeta.version().encode()).hexdigest()[:20]
 
 
 def _load(names: Sequence[str], library: Path) -> dict[str, ca.Function] | None:

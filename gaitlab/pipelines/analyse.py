@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..clinical.document import CalibrationEntry, Document, WeightsEntry
-from ..errors import InvalidRecording, NotConverged
+from ..errors import InvalidRecording, NotConverged, WorkerLost
 from ..inverse.conventional import ConventionalKinematics, joint_kinematics
 from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
@@ -154,7 +154,7 @@ def _try_weights(request: WeightsRequest, progress: Progress) -> tuple[TrialWeig
     """The weights as far as they came, and why they did not converge, if so."""
     try:
         weights = identify_weights(request, progress)
-    except NotConverged as error:
+    except (NotConverged, WorkerLost) as error:
         return None, str(error)
     solver = weights.entry.solver
     reason = "" if solver.status == "solved" else solver.message or "the weights did not converge"
@@ -172,6 +172,7 @@ def _request(
         heading=walk.kinematics.heading,
         criteria=options.criteria,
         seed=options.seed,
+        processes=options.processes,
     )
 
 

@@ -22,6 +22,7 @@ from ..ocp.mechanical import ContactStage
 from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
+from ..walking.arcs import part_of_stages
 from ..walking.identification import IdentificationSettings, WalkLevel, arc_boundaries
 from ..walking.model import ROOT, walking_functions
 from ..walking.tracking import N_FORCES
@@ -60,8 +61,10 @@ class OptimalStride:
     """True weights on the simplex, for criteria divided by `normalisers`, shape (n_criteria,)."""
     normalisers: np.ndarray
     """Integrals of the criteria over the optimal stride, shape (n_criteria,)."""
+    accelerations: float
+    """Number that divides the squared accelerations in their floor, for the true weights [1/s^3]."""
     change: float
-    """Relative change of the floor of accelerations in the last repetition."""
+    """Relative change of that number in the last repetition."""
     settings: IdentificationSettings
 
 
@@ -94,11 +97,13 @@ def optimal_stride(tracked: TrackedRecording, weights: dict[str, float]) -> Opti
         data = level.problem(theta).data
         arcs = [_again(arc, data, settings) for arc in arcs]
     criteria = _stride_of_arcs(level, arcs)[0]
+    true_weights, scale = _restated(level, theta, criteria)
     return OptimalStride(
         arcs=tuple(arcs),
         criteria=settings.criteria,
-        weights=_restated(level, theta, criteria)[0],
+        weights=true_weights,
         normalisers=criteria[level.indices],
+        accelerations=level.acceleration_normaliser / scale,
         change=float(change),
         settings=settings,
     )
@@ -149,7 +154,7 @@ def _first(tracked: TrackedRecording, data: MechanicalData, first: int, last: in
     walk, n = tracked.walk, int(last - first)
     subject, states = walk.stride.subject, walk.states[first : last + 1]
     functions = walking_functions(layout_of(subject)).functions
-    stages = _cut(walk.stride.stages, first, last)
+    stages = part_of_stages(walk.stride.stages, first, last)
     every = tuple(range(states.shape[1]))
     layout = MechanicalLayout(stages, subject.n_q, N_FORCES, ROOT, Boundary(((0, every), (n, every))))
     layout = without_redundant_contacts(layout, functions, data.p, states)
@@ -179,15 +184,3 @@ def _solved(arc: OptimalArc) -> OptimalArc:
     if arc.solution.status is not Status.SOLVED:
         raise NotConverged(f"the demo arc from node {arc.first} was not solved: {arc.solution.status}")
     return arc
-
-
-def _cut(stages: tuple[ContactStage, ...], first: int, last: int) -> tuple[ContactStage, ...]:
-    """The part of the stages between two nodes."""
-    parts: list[ContactStage] = []
-    node = 0
-    for stage in stages:
-        n = min(last, node + stage.n_intervals) - max(first, node)
-        if n > 0:
-            parts.append(replace(stage, n_intervals=int(n), duration=stage.duration * n / stage.n_intervals))
-        node += stage.n_intervals
-    return tuple(parts)

@@ -82,6 +82,7 @@ def _truth(
             "torque": settings.torque_floor,
             "acceleration": settings.smoothness_floor,
             "force": settings.force_weight,
+            "acceleration_normaliser": stride.accelerations,
         },
         "stages": [
             {"label": stage.label, "duration_s": round(stage.duration, DIGITS)} for stage in tracked.walk.stride.stages

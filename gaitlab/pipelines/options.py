@@ -33,6 +33,8 @@ class AnalysisOptions:
     weights: bool = True
     """Whether to compute the walk and its weights."""
     seed: int = 0
+    processes: int = 0
+    """Processes that solve arcs of the walk at the same time; 0: as many as there are processors."""
     redetect_events: bool = False
     """Detect events although the file has some."""
     static_offsets: StaticOffsets = "computed"
@@ -49,6 +51,8 @@ class AnalysisOptions:
             _check_parameter(name, value)
         for name in self.criteria:
             by_name(name)
+        if self.processes < 0:
+            raise ProblemError(f"processes must be 0 (as many as there are processors) or more, got {self.processes}")
         if self.weights and not self.criteria:
             raise ProblemError("no criterion is left: name at least one with --criteria, or ask for --no-weights")
 

@@ -1,6 +1,7 @@
 """From measured coordinates to the weights of the criteria: the seam between gait analysis and optimal control."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from time import perf_counter
 
@@ -14,6 +15,7 @@ from ..mocap.cycles import Cycle, full_strides
 from ..mocap.recording import Event, Recording
 from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
+from ..nlp.workers import Workers, usable_processors
 from ..walking.contact_phases import contact_phases, foot_directions
 from ..walking.contact_schedule import contact_stages
 from ..walking.criteria import by_name
@@ -44,6 +46,8 @@ class WeightsRequest:
     """Direction of the gait frame's x axis in the laboratory [rad]."""
     criteria: tuple[str, ...]
     seed: int
+    processes: int = 0
+    """Processes to compute with; 0: as many as there are processors."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,7 +70,7 @@ class ExplainedStride:
 
 
 def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeights:
-    """Tracking, continuation and weights of one walk: the most central stride, and one more where there is one.
+    """Tracking, the optimal walk and the weights of one walk: the most central stride, and one more where there is one.
 
     Raises:
         InvalidRecording: no stride of the walk can be used.
@@ -78,14 +82,20 @@ def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeight
     strides, skipped = usable_strides(request)
     progress(Step(stage="preparing the model (the first time on a machine: a minute)", trial=request.recording.name))
     walking_functions(layout_of(strides[0][1].subject))
-    explained, failed = _explain_all(request, strides, progress)
+    with _workers(request.processes) as workers:
+        explained, failed = _explain_all(request, strides, progress, workers)
+        unseen = _unseen(explained)
     main = explained[0]
     entries = [stride_entry(request.recording.name, s.cycle, s.found, s.seconds) for s in explained]
-    entry = weights_entry(main.found, main.seconds)
-    entry = replace_strides(entry, entries, _unseen(explained))
+    entry = replace_strides(weights_entry(main.found, main.seconds), entries, unseen)
     recording = request.recording
     arrays = optimal_arrays(main.found, recording.n_frames, recording.rate, request.heading)
     return TrialWeights(entry=entry, arrays=arrays, warnings=(*skipped, *failed))
+
+
+def _workers(processes: int) -> AbstractContextManager[Workers | None]:
+    count = processes or usable_processors()
+    return Workers(count) if count > 1 else nullcontext()
 
 
 def replace_strides(entry: WeightsEntry, strides: list[StrideWeights], unseen: dict[str, float]) -> WeightsEntry:
@@ -128,7 +138,10 @@ def _apart(strides: list[tuple[Cycle, MeasuredStride]]) -> list[tuple[Cycle, Mea
 
 
 def _explain_all(
-    request: WeightsRequest, strides: Sequence[tuple[Cycle, MeasuredStride]], progress: Progress
+    request: WeightsRequest,
+    strides: Sequence[tuple[Cycle, MeasuredStride]],
+    progress: Progress,
+    workers: Workers | None,
 ) -> tuple[list[ExplainedStride], tuple[str, ...]]:
     settings = ExplanationSettings(identification=IdentificationSettings(criteria=request.criteria))
     explained: list[ExplainedStride] = []
@@ -140,12 +153,13 @@ def _explain_all(
 
         def report(stage: str, iteration: int, residual: float, where: str = where) -> None:
             words = f"{stage}, {where}"
-            progress(Step(stage=words, trial=request.recording.name, iteration=iteration, residual=residual))
+            known = residual if np.isfinite(residual) else None
+            progress(Step(stage=words, trial=request.recording.name, iteration=iteration, residual=known))
 
         begin = perf_counter()
         try:
             # The first stride carries the comparison with other weights; the others are there for the spread.
-            found = explain(stride, replace(settings, single_criteria=not explained), report)
+            found = explain(stride, replace(settings, single_criteria=not explained), report, workers)
         except NotConverged as error:
             failed.append(f"{where}: {error}")
             continue

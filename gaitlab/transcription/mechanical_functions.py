@@ -4,7 +4,19 @@ from collections.abc import Mapping
 
 import casadi as ca
 
+from ..nlp.codegen import compile_derived
 from ..ocp.mechanical import MechanicalModel
+
+
+def compiled_point_functions(model: MechanicalModel, name: str) -> dict[str, ca.Function]:
+    """`point_functions`, compiled and cached under a name."""
+
+    def build() -> list[ca.Function]:
+        return list(point_functions(model).values())
+
+    symbols = [model.q, model.v, model.a, model.f, model.p, model.d, model.y]
+    results = [model.outputs, model.criteria, model.positions, model.velocities]
+    return compile_derived(ca.Function("model", symbols, results), build, name)
 
 
 def point_functions(model: MechanicalModel) -> dict[str, ca.Function]:

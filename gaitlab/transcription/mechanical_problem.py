@@ -43,7 +43,7 @@ class MechanicalStructure:
     """Sparsity and functions of a layout, shared by all data."""
 
     def __init__(self, layout: MechanicalLayout, functions: Mapping[str, ca.Function]) -> None:
-        self.layout, n = layout, layout.n_intervals
+        self.layout, self.functions, n = layout, functions, layout.n_intervals
         self.coefficients = hermite_coefficients(GAUSS_POINTS, layout.interval_lengths()).reshape(2 * n, 3, 4)
         self.weights = np.repeat(layout.interval_lengths() / 2.0, 2)  # (2 N,)
         self.point_index = layout.point_index().reshape(2 * n, -1)

@@ -10,14 +10,19 @@ from ..bilevel.implicit_gauss_newton import ImplicitGaussNewton
 from ..bilevel.result import WeightEstimate, rms
 from ..errors import NotConverged
 from ..nlp.sparse_solution import Status
+from ..nlp.workers import Workers
 from .identification import IdentificationSettings, WalkLevel, WalkOptimum
 from .tracking import MeasuredStride, TrackedWalk, TrackingSettings, track
 
 CERTIFICATE = 1e-6
 """Largest first-order residual of an accepted solution."""
 
+SECOND_LOOKS = 3
+"""How often the search goes on from a better optimum found at its end."""
+
 Report = Callable[[str, int, float], None]
-"""Called with the stage in words, the iteration and its residual; cancels by raising `errors.Cancelled`."""
+"""Called with the stage in words, the iteration and its residual (not a number where a stage counts arcs solved);
+cancels by raising `errors.Cancelled`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,9 +59,12 @@ class Explanation:
 
 
 def explain(
-    stride: MeasuredStride, settings: ExplanationSettings | None = None, report: Report | None = None
+    stride: MeasuredStride,
+    settings: ExplanationSettings | None = None,
+    report: Report | None = None,
+    workers: Workers | None = None,
 ) -> Explanation:
-    """Track a stride and find the weights of its criteria.
+    """Track a stride and find the weights of its criteria, on one processor or with the help of workers.
 
     Raises:
         NotConverged: the tracking problem or the optimal control problem with equal weights was not solved.
@@ -66,24 +74,27 @@ def explain(
     tracked = track(stride, settings.tracking, _part(report, "tracking"))
     seconds = perf_counter() - begin
     _require(tracked.solution.status, "tracking the measured stride", tracked.solution.iterations)
-    return replace(explain_tracked(tracked, settings, report), tracking_seconds=seconds)
+    return replace(explain_tracked(tracked, settings, report, workers), tracking_seconds=seconds)
 
 
 def explain_tracked(
-    tracked: TrackedWalk, settings: ExplanationSettings | None = None, report: Report | None = None
+    tracked: TrackedWalk,
+    settings: ExplanationSettings | None = None,
+    report: Report | None = None,
+    workers: Workers | None = None,
 ) -> Explanation:
     """Find the weights of the criteria of a tracked stride. Raises `errors.NotConverged` as `explain` does."""
     settings = settings or ExplanationSettings()
-    level = WalkLevel(tracked, settings.identification)
+    level = WalkLevel(tracked, settings.identification, workers)
     theta = np.full(level.n_theta, 1.0 / level.n_theta)
-    equal = level.from_tracking(theta, _part(report, "continuation"))
+    equal = level.from_tracking(theta, _arcs(report, "equal weights"))
     _require(equal.solution.status, "the optimal control problem without tracking", equal.solution.iterations)
     singles = single_criteria(level, equal, report) if settings.single_criteria else []
     candidates = [(theta, equal), *((vertex, r) for vertex, r in singles if _solved(r))]
     best = min(candidates, key=lambda candidate: rms(candidate[1].residual))
     # The loss has several minima: the middle of the simplex is tried even where a corner fits better at first.
     starts = [best] if best is candidates[0] else [best, candidates[0]]
-    estimates = [settings.method.solve(level, *start, _part(report, "weights")) for start in starts]
+    estimates = [_search(level, settings.method, start, report) for start in starts]
     estimate = min(estimates, key=lambda found: found.rms)
     return Explanation(
         tracked=tracked,
@@ -98,21 +109,30 @@ def explain_tracked(
     )
 
 
+def _search(
+    level: WalkLevel, method: ImplicitGaussNewton, start: tuple[np.ndarray, WalkOptimum], report: Report | None
+) -> WeightEstimate:
+    """Weights from a start, followed until no arc has a better optimum than the one that was followed there."""
+    theta, response = start
+    estimate = method.solve(level, theta, response, _part(report, "weights"))
+    for _ in range(SECOND_LOOKS):
+        found = WalkOptimum(level, level.problem(estimate.theta), estimate.response.solution)
+        fresh = level.from_tracking(estimate.theta, _arcs(report, "looking for better optima"))
+        better = level.lowest(found, fresh) if _solved(fresh) else found
+        if better.solution.f >= found.solution.f:
+            break
+        estimate = method.solve(level, estimate.theta, better, _part(report, "weights"))
+    return estimate
+
+
 def single_criteria(
     level: WalkLevel, start: WalkOptimum, report: Report | None = None
 ) -> list[tuple[np.ndarray, WalkOptimum]]:
     """Optimal walks of each criterion alone, followed from a solved one: weights, shape (n_theta,), and response."""
-    tell = _part(report, "single criteria")
     found: list[tuple[np.ndarray, WalkOptimum]] = []
-    centre = np.full(level.n_theta, 1.0 / level.n_theta)
-    for i in range(level.n_theta):
+    for i, name in enumerate(level.settings.criteria):
         vertex = np.eye(level.n_theta)[i]
-        response = start
-        for part in (0.6, 1.0):
-            response = level.respond_from_afar((1.0 - part) * centre + part * vertex, response.solution)
-        if tell is not None:
-            tell(i, rms(response.residual))
-        found.append((vertex, response))
+        found.append((vertex, level.respond_from_afar(vertex, start.solution, _arcs(report, f"only {name}"))))
     return found
 
 
@@ -124,6 +144,12 @@ def _part(report: Report | None, stage: str) -> Callable[[int, float], None] | N
     if report is None:
         return None
     return lambda iteration, residual: report(stage, iteration, residual)
+
+
+def _arcs(report: Report | None, stage: str) -> Callable[[int], None] | None:
+    if report is None:
+        return None
+    return lambda n_solved: report(stage, n_solved, float("nan"))
 
 
 def _require(status: Status, what: str, iterations: int) -> None:

@@ -2,9 +2,10 @@
 
 The lower level sees the durations and contacts of the stages, the state of the body at the boundaries of short arcs
 (every change between stance and swing, and in between so that no arc is longer than `longest_arc`), and the weighted
-criteria. It does not see the measured motion inside the arcs: there is no tracking term. Two floors keep it well
-posed: squared torque, and squared acceleration of the angles. Without the second one, segments with little inertia
-(a swinging foot, the rotation of a stretched leg about its axis) may turn freely at almost no torque.
+criteria. The arcs are solved one by one (`arcs`). It does not see the measured motion inside the arcs: there is no
+tracking term. Two floors keep it well posed: squared torque, and squared acceleration of the angles. Without the
+second one, segments with little inertia (a swinging foot, the rotation of a stretched leg about its axis) may turn
+freely at almost no torque.
 """
 
 from collections.abc import Callable
@@ -16,11 +17,13 @@ import numpy as np
 from ..multibody.dynamics import layout_of
 from ..nlp.interior_point import InteriorPoint
 from ..nlp.sensitivity import Sensitivity
-from ..nlp.sparse_solution import SparseSolution, Status
+from ..nlp.sparse_solution import SparseSolution
+from ..nlp.workers import Workers
 from ..ocp.mechanical import ContactStage
 from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalProblem, MechanicalStructure
+from .arcs import Arcs
 from .criteria import ALL, THESIS, by_name
 from .model import ROOT, walking_functions
 from .tracking import N_FORCES, TrackedWalk
@@ -30,6 +33,8 @@ HEIGHTS = ((2, 5), (8, 11))
 
 NEARBY = 12
 """Iterations granted to a start that should be close; a good prediction needs two to five."""
+AFAR, UNKNOWN = 1e-4, 1e-3
+"""First barrier parameters from a solution for other weights, and from a walk that is no solution."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,8 +52,6 @@ class IdentificationSettings:
     solver: InteriorPoint = field(
         default_factory=lambda: InteriorPoint(tol=1e-8, mu_initial=1e-7, mu_final=1e-7, max_iter=150)
     )
-    continuation: tuple[float, ...] = (0.1, 0.0)
-    """Factors on the tracking weights on the way from tracking to the pure optimal control problem."""
 
 
 class WalkOptimum:
@@ -96,8 +99,8 @@ class WalkOptimum:
 class WalkLevel:
     """A `bilevel.problem.LowerLevel` made from a tracked walk."""
 
-    def __init__(self, tracked: TrackedWalk, settings: IdentificationSettings) -> None:
-        self.tracked, self.settings = tracked, settings
+    def __init__(self, tracked: TrackedWalk, settings: IdentificationSettings, workers: Workers | None = None) -> None:
+        self.tracked, self.settings, self.workers = tracked, settings, workers
         names = list(ALL)
         self.indices = [names.index(by_name(name).name) for name in settings.criteria]
         self.torque = names.index("torque")
@@ -107,6 +110,7 @@ class WalkLevel:
         self.free = np.setdiff1d(np.arange(len(tracked.stride.times)), self.given_nodes)
         functions = walking_functions(layout_of(tracked.stride.subject)).functions
         self.structure = MechanicalStructure(self._layout(), functions)
+        self.arcs = Arcs(self.structure, layout_of(tracked.stride.subject))
         self.smooth = np.concatenate([np.zeros(3), np.ones(tracked.stride.n_q - 3)])
         self.acceleration_normaliser = self._acceleration_cost(tracked.problem, tracked.solution.w)
 
@@ -128,8 +132,8 @@ class WalkLevel:
         a = problem.points(w)[:, 2 * n_q : 3 * n_q]
         return float(problem.shared.weights @ (a**2 @ self.smooth))
 
-    def problem(self, theta: np.ndarray, tracking: float = 0.0) -> MechanicalProblem:
-        """Lower level for weights theta, shape (n_theta,), with a factor on the tracking weights (0: none)."""
+    def problem(self, theta: np.ndarray) -> MechanicalProblem:
+        """Lower level for weights theta, shape (n_theta,)."""
         settings = self.settings
         weights = np.zeros(len(ALL))
         weights[self.indices] = theta / self.normalisers
@@ -138,7 +142,7 @@ class WalkLevel:
             self.tracked.problem.data,
             theta=weights,
             given=self.tracked.states,
-            tracking=tracking * self.tracked.problem.data.tracking,
+            tracking=np.zeros_like(self.tracked.problem.data.tracking),
             acceleration_weights=2.0 * settings.smoothness_floor / self.acceleration_normaliser * self.smooth,
             force_weight=settings.force_weight,
         )
@@ -146,25 +150,36 @@ class WalkLevel:
 
     def respond(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
         """Solve for theta, shape (n_theta,), from a nearby solution."""
-        problem = self.problem(theta)
-        solution = replace(self.settings.solver, max_iter=NEARBY).solve(problem, start)
-        return WalkOptimum(self, problem, solution) if _solved(solution) else self.respond_from_afar(theta, start)
+        near = replace(self.settings.solver, max_iter=NEARBY)
+        return self._solve(self.problem(theta), start, (near, self._from(AFAR)))
 
-    def respond_from_afar(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
+    def respond_from_afar(
+        self, theta: np.ndarray, start: SparseSolution, done: Callable[[int], None] | None = None
+    ) -> WalkOptimum:
         """Solve for theta, shape (n_theta,), from a solution for quite other weights."""
-        problem = self.problem(theta)
-        # Far from the solution a small barrier parameter would press the iterates against the inequalities.
-        return WalkOptimum(self, problem, replace(self.settings.solver, mu_initial=1e-4).solve(problem, start))
+        return self._solve(self.problem(theta), start, (self._from(AFAR), self._from(UNKNOWN)), done)
 
-    def from_tracking(self, theta: np.ndarray, progress: Callable[[int, float], None] | None = None) -> WalkOptimum:
-        """Follow the solution from the tracked walk, shape (n_theta,) weights, to no tracking at all."""
-        solver = replace(self.settings.solver, mu_initial=1e-3)
-        problem = self.problem(theta, self.settings.continuation[0])
-        solution = solver.solve(problem, self.tracked.solution.w, progress)
-        for factor in self.settings.continuation[1:]:
-            problem = self.problem(theta, factor)
-            solution = solver.solve(problem, solution, progress)
-        return WalkOptimum(self, problem, solution)
+    def from_tracking(self, theta: np.ndarray, done: Callable[[int], None] | None = None) -> WalkOptimum:
+        """Solve for theta, shape (n_theta,), from the tracked walk; `done(n_arcs_solved)` may raise to cancel."""
+        start = self.tracked.solution.w
+        return self._solve(self.problem(theta), start, (self._from(UNKNOWN), self._from(AFAR)), done)
+
+    def lowest(self, first: WalkOptimum, second: WalkOptimum) -> WalkOptimum:
+        """Of two optima for the same weights the better one in each arc."""
+        return WalkOptimum(self, first.problem, self.arcs.lowest(first.problem, first.solution, second.solution))
+
+    def _from(self, barrier: float) -> InteriorPoint:
+        # Far from the solution a small barrier parameter would press the iterates against the inequalities.
+        return replace(self.settings.solver, mu_initial=barrier)
+
+    def _solve(
+        self,
+        problem: MechanicalProblem,
+        start: SparseSolution | np.ndarray,
+        methods: tuple[InteriorPoint, ...],
+        done: Callable[[int], None] | None = None,
+    ) -> WalkOptimum:
+        return WalkOptimum(self, problem, self.arcs.solve(problem, start, methods, self.workers, done))
 
     def cost_terms(self, problem: MechanicalProblem, solution: SparseSolution) -> dict[str, float]:
         """Weighted parts of the cost at a solution."""
@@ -179,10 +194,6 @@ class WalkLevel:
         forces = problem.points(w)[:, 3 * self.tracked.stride.n_q :]
         contact = 0.5 * d.force_weight * float(problem.shared.weights @ np.sum(forces**2, axis=1))
         return terms | {"torque_floor": float(floor), "smoothness_floor": smooth, "contact_force_floor": contact}
-
-
-def _solved(solution: SparseSolution) -> bool:
-    return solution.status is Status.SOLVED
 
 
 def arc_boundaries(stages: tuple[ContactStage, ...], longest: float) -> np.ndarray:

@@ -14,9 +14,8 @@ from ..multibody.dynamics import (
     inverse_dynamics,
     segment_origins,
 )
-from ..nlp.codegen import compile_functions
 from ..ocp.mechanical import MechanicalModel
-from ..transcription.mechanical_functions import point_functions
+from ..transcription.mechanical_functions import compiled_point_functions
 from .criteria import ALL, WalkState
 
 POINTS = ("right_heel", "right_toe", "left_heel", "left_toe")
@@ -82,7 +81,4 @@ class WalkingFunctions:
 @lru_cache(maxsize=4)
 def walking_functions(layout: ModelLayout) -> WalkingFunctions:
     """Build and compile the functions of a layout; the second call, in this process or a later one, is quick."""
-    model = walking_model(layout)
-    functions = point_functions(model)
-    compiled = compile_functions(list(functions.values()), "walking")
-    return WalkingFunctions(layout, compiled)
+    return WalkingFunctions(layout, compiled_point_functions(walking_model(layout), "walking"))

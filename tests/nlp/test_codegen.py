@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gaitlab.errors import ProblemError
-from gaitlab.nlp.codegen import Batch, cache_directory, compile_functions
+from gaitlab.nlp.codegen import Batch, cache_directory, compile_derived, compile_functions
 
 needs_compiler = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler called cc")
 
@@ -56,6 +56,25 @@ def test_the_second_time_nothing_is_compiled(functions, cache, tmp_path, monkeyp
     monkeypatch.setenv("GAITLAB_COMPILER", fake_compiler(tmp_path, f"touch {tmp_path / 'called'}; exit 1"))
     assert is_compiled(compile_functions(functions, "test"))
     assert not (tmp_path / "called").exists()
+
+
+@needs_compiler
+def test_known_expressions_are_not_derived_again(functions, cache):
+    builds = []
+
+    def build():
+        builds.append(1)
+        return functions
+
+    compile_derived(functions[0], build, "test")
+    again = compile_derived(functions[0], build, "test")
+    assert is_compiled(again)
+    assert len(builds) == 1
+    np.testing.assert_allclose(np.array(again["value"]([0, 0, 1], [1, 2])).ravel(), [0, 3])
+    compile_derived(functions[1], build, "test")
+    next(cache.glob("*.so")).unlink()
+    compile_derived(functions[0], build, "test")
+    assert len(builds) == 3
 
 
 @needs_compiler

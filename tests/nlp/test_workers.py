@@ -1,0 +1,72 @@
+"""Processes of our own: results in order, errors carried over, lost children named."""
+
+import os
+import sys
+import time
+from dataclasses import dataclass
+
+import pytest
+
+from gaitlab.errors import Cancelled, ProblemError, WorkerLost
+from gaitlab.nlp.workers import Workers, usable_processors
+
+
+@dataclass(frozen=True)
+class Square:
+    x: float
+
+    def run(self):
+        if self.x < 0:
+            raise ProblemError("x must not be negative")
+        time.sleep(0.02 * (3.0 - self.x))
+        sys.stdout.write("noise")
+        return self.x**2, os.getpid()
+
+
+@dataclass(frozen=True)
+class Die:
+    def run(self):
+        os._exit(7)
+
+
+@pytest.fixture
+def workers(monkeypatch):
+    monkeypatch.setenv("PYTHONPATH", os.path.dirname(__file__))
+    with Workers(2) as found:
+        yield found
+
+
+def test_results_come_in_the_order_of_the_tasks(workers):
+    told = []
+    results = workers.map([Square(x) for x in (0.0, 1.0, 2.0)], lambda i, found: told.append((i, found[0])))
+    assert [value for value, _ in results] == [0.0, 1.0, 4.0]
+    assert sorted(told) == [(0, 0.0), (1, 1.0), (2, 4.0)]
+    assert os.getpid() not in {pid for _, pid in results}
+
+
+def test_errors_of_a_task_are_raised_here(workers):
+    with pytest.raises(ProblemError, match="not be negative"):
+        workers.map([Square(1.0), Square(-1.0)])
+
+
+def test_a_child_that_dies_is_named(workers):
+    with pytest.raises(WorkerLost, match=r"ended without a result \(code (7|-9)\)"):
+        workers.map([Die()])
+
+
+def test_whoever_is_told_may_cancel(workers):
+    def cancel(_index, _found):
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        workers.map([Square(x) for x in (0.0, 1.0, 2.0)], cancel)
+
+
+def test_children_end_with_the_context():
+    with Workers(1) as found:
+        (process,) = found._processes
+    assert process.poll() is not None
+
+
+def test_there_is_a_processor():
+    assert usable_processors() >= 1

@@ -1,0 +1,64 @@
+"""The inverse problem against walks of known weights, which another grid and another integrator made.
+
+The states between arcs, the normalisers and the floors are those of the truth; durations, contacts and the motion
+within the arcs are all that the search for the weights sees.
+"""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitlab.bilevel.implicit_gauss_newton import ImplicitGaussNewton
+from gaitlab.bilevel.result import rms
+from gaitlab.pipelines.bundled import DEMO_CHILDREN, demo_folder
+from gaitlab.pipelines.demo_data import WALKS
+from gaitlab.pipelines.demo_gait import reference_gait
+from gaitlab.pipelines.demo_patterns import GRID, demo_patterns
+from gaitlab.pipelines.demo_tracking import pattern_stages
+from gaitlab.walking.arcs import part_of_stages
+from gaitlab.walking.identification import IdentificationSettings, WalkLevel, arc_boundaries
+from gaitlab.walking.tracking import measured_stride, track
+
+pytestmark = pytest.mark.slow
+
+CLOSE = 0.02
+
+
+def recorded(child, walk):
+    """Truth of a walk and its right stride as recorded without error."""
+    truth = json.loads((demo_folder(child) / "truth.json").read_text())["walks"][walk]
+    (pattern,) = (p.paced(*WALKS[child][walk]) for p in demo_patterns() if p.name == child)
+    start, end = truth["optimal_stride_s"]
+    stages = part_of_stages(pattern_stages(pattern, GRID), round(start / GRID), round(end / GRID))
+    stride = measured_stride(reference_gait(pattern).subject, stages, start, np.array(truth["q"]), truth["rate_hz"])
+    return truth, stride
+
+
+def level_of(truth, stride):
+    """The lower level with everything given as it was."""
+    tracked = track(stride)
+    states = tracked.states.copy()
+    nodes = arc_boundaries(stride.stages, IdentificationSettings().longest_arc)
+    states[nodes] = [*(arc["state"] for arc in truth["arcs"]), truth["end_state"]]
+    w = tracked.solution.w.copy()
+    w[: states.size] = states.ravel()
+    level = WalkLevel(replace(tracked, solution=replace(tracked.solution, w=w)), IdentificationSettings())
+    level.all_normalisers[level.indices] = truth["normalisers"]
+    level.normalisers = np.array(truth["normalisers"])
+    level.acceleration_normaliser = truth["floors"]["acceleration_normaliser"]
+    return level
+
+
+@pytest.mark.parametrize("walk", ["walk1", "walk2"])
+@pytest.mark.parametrize("child", DEMO_CHILDREN)
+def test_known_weights_come_back(child, walk):
+    truth, stride = recorded(child, walk)
+    level = level_of(truth, stride)
+    equal = np.full(level.n_theta, 1.0 / level.n_theta)
+    found = ImplicitGaussNewton().solve(level, equal, level.from_tracking(equal))
+    assert found.converged
+    assert rms(found.response.residual) < 0.003
+    np.testing.assert_allclose(found.theta, truth["weights"], atol=CLOSE)
+    assert np.abs(equal - truth["weights"]).max() > 4 * CLOSE

@@ -1,0 +1,96 @@
+"""Arcs of a demo stride against the whole problem that they are parts of."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gaitlab.nlp.sparse_solution import Status
+from gaitlab.nlp.workers import Workers
+from gaitlab.pipelines.analyse import Sources, analyse_files
+from gaitlab.pipelines.bundled import demo_folder
+from gaitlab.pipelines.options import AnalysisOptions
+from gaitlab.pipelines.weights import WeightsRequest, usable_strides
+from gaitlab.walking.arcs import part_of_stages
+from gaitlab.walking.identification import AFAR, IdentificationSettings, WalkLevel
+from gaitlab.walking.tracking import track
+
+THETA = np.array([0.4, 0.3, 0.2, 0.1])
+
+
+@pytest.fixture(scope="module")
+def level():
+    folder = demo_folder("demo_cp_child")
+    options = AnalysisOptions(weights=False)
+    trial = analyse_files(Sources(static=folder / "static.c3d", walks=(folder / "walk1.c3d",)), options).trials[0]
+    request = WeightsRequest(
+        recording=trial.recording,
+        events=trial.events,
+        subject=trial.subject,
+        q=trial.motion.q,
+        heading=trial.kinematics.heading,
+        criteria=options.criteria,
+        seed=0,
+    )
+    return WalkLevel(track(usable_strides(request)[0][0][1]), IdentificationSettings())
+
+
+@pytest.fixture(scope="module")
+def optimum(level):
+    return level.from_tracking(THETA)
+
+
+def test_parts_make_up_the_whole(level):
+    """Cost and constraints of the arcs, at a point that solves nothing, are those of the whole."""
+    whole = level.problem(THETA)
+    w = level.tracked.solution.w.copy()[: whole.structure.n_w]
+    w = np.concatenate([w, np.zeros(whole.structure.n_w - len(w))]) + 0.01 * np.sin(np.arange(whole.structure.n_w))
+    expected = whole.values(w)
+    cost, seen_g, seen_c = 0.0, [], []
+    for arc in level.arcs.parts:
+        values = type(whole)(arc.structure, arc.data(whole.data)).values(w[arc.w])
+        np.testing.assert_allclose(values.g, expected.g[arc.g], atol=1e-12)
+        np.testing.assert_allclose(values.c, expected.c[arc.c], atol=1e-12)
+        cost += values.f
+        seen_g.append(arc.g)
+        seen_c.append(arc.c)
+    assert cost == pytest.approx(expected.f, rel=1e-10)
+    np.testing.assert_array_equal(np.unique(np.concatenate(seen_g)), np.arange(whole.structure.n_g))
+    np.testing.assert_array_equal(np.sort(np.concatenate(seen_c)), np.arange(whole.structure.n_c))
+
+
+def test_joint_solution_is_certified_on_the_whole_and_found_by_solving_it(level, optimum):
+    assert optimum.solution.status is Status.SOLVED
+    assert optimum.solution.is_optimal(1e-6)
+    method = replace(level.settings.solver, mu_initial=AFAR)
+    whole = method.solve(optimum.problem, optimum.solution)
+    assert whole.f == pytest.approx(optimum.solution.f, rel=1e-7)
+    np.testing.assert_allclose(whole.w, optimum.solution.w, atol=1e-4)
+
+
+def test_other_processes_find_exactly_the_same(level, optimum):
+    with Workers(2) as workers:
+        there = WalkLevel(level.tracked, level.settings, workers).from_tracking(THETA)
+    np.testing.assert_array_equal(there.solution.w, optimum.solution.w)
+    np.testing.assert_array_equal(there.solution.lam_g, optimum.solution.lam_g)
+
+
+def test_each_arc_keeps_the_better_of_two_optima(level, optimum):
+    """A worse walk in all arcs but one: only that one is taken over."""
+    arc = level.arcs.parts[1]
+    worse = level.respond_from_afar(np.array([0.0, 0.0, 0.0, 1.0]), optimum.solution).solution
+    mixed = worse.w.copy()
+    mixed[arc.w] = optimum.solution.w[arc.w]
+    joint = level.arcs.lowest(optimum.problem, replace(worse, w=worse.w), replace(worse, w=mixed))
+    np.testing.assert_allclose(joint.w[arc.w], optimum.solution.w[arc.w], atol=1e-12)
+    last = level.arcs.parts[-1]
+    np.testing.assert_allclose(joint.w[last.w][-50:], worse.w[last.w][-50:], atol=1e-12)
+
+
+def test_parts_of_stages_keep_time_and_contacts(level):
+    stages = level.tracked.stride.stages
+    n = sum(s.n_intervals for s in stages)
+    pieces = part_of_stages(stages, 0, 7) + part_of_stages(stages, 7, n)
+    assert sum(s.n_intervals for s in pieces) == n
+    assert sum(s.duration for s in pieces) == pytest.approx(sum(s.duration for s in stages))
+    assert {s.label for s in pieces} == {s.label for s in stages}
