@@ -3,7 +3,7 @@
 import csv
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import OutputError, ProblemError
@@ -28,6 +28,20 @@ class Row:
     complementarity: float
     iterations: int
     seconds: float
+    sense: int
+    """1 where the file minimises, -1 where it maximises; not a column of the CSV file."""
+
+    @property
+    def solved(self) -> bool:
+        """Whether the point is feasible and certified stationary."""
+        return self.status == "solved"
+
+    def reaches(self, best: float) -> bool:
+        """Whether the row is solved with an objective as good as `best`, to 1e-3 max(1, |best|)."""
+        return self.solved and self.sense * (self.objective - best) <= 1e-3 * max(1.0, abs(best))
+
+
+COLUMNS = ("problem", "method", "status", "objective", "violation", "complementarity", "iterations", "seconds")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,31 +106,14 @@ def write_rows(rows: Iterator[Row], path: Path) -> Iterator[Row]:
     try:
         with path.open("w", newline="") as stream:
             writer = csv.writer(stream)
-            writer.writerow(field.name for field in fields(Row))
+            writer.writerow(COLUMNS)
             for row in rows:
-                writer.writerow(f"{value:.10g}" if isinstance(value, float) else value for value in astuple(row))
+                values = (getattr(row, column) for column in COLUMNS)
+                writer.writerow(f"{value:.10g}" if isinstance(value, float) else value for value in values)
                 stream.flush()
                 yield row
     except OSError as error:
         raise OutputError(f"{path}: {error.strerror}") from error
-
-
-def read_rows(path: Path) -> list[Row]:
-    """Rows of a file written by `write_rows`."""
-    with path.open(newline="") as stream:
-        return [
-            Row(
-                problem=line["problem"],
-                method=line["method"],
-                status=line["status"],
-                objective=float(line["objective"]),
-                violation=float(line["violation"]),
-                complementarity=float(line["complementarity"]),
-                iterations=int(line["iterations"]),
-                seconds=float(line["seconds"]),
-            )
-            for line in csv.DictReader(stream)
-        ]
 
 
 def _row(path: Path, method: str, results: list[StartResult], trouble: list[str]) -> Row:
@@ -135,4 +132,21 @@ def _row(path: Path, method: str, results: list[StartResult], trouble: list[str]
         complementarity=chosen.complementarity if chosen else nothing,
         iterations=sum(solution.iterations for solution in solutions),
         seconds=sum(result.seconds for result in results),
+        sense=results[0].sense if results else 1,
     )
+
+
+def read_reference(folder: Path) -> dict[str, float]:
+    """Best known objectives of a folder's `reference.csv`, columns problem and best_known; empty without one.
+
+    Raises:
+        ProblemError: The file has other columns, or something else than numbers.
+    """
+    path = folder / "reference.csv"
+    if not path.is_file():
+        return {}
+    try:
+        with path.open(newline="") as stream:
+            return {line["problem"]: float(line["best_known"]) for line in csv.DictReader(stream)}
+    except (KeyError, ValueError, UnicodeDecodeError) as error:
+        raise ProblemError(f"{path}: expected columns problem and best_known with numbers ({error})") from error
