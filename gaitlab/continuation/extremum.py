@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import ProblemError
 from .adjoints import estimated_multipliers, held_monitors, reduced_curvature
 from .extended_system import ADJOINT, RELAXATION, ExtendedSystem
+from .feasible_start import feasible_start
 from .path_events import BranchPoint, Crossing, Event
 from .path_following import NO_SIGN, LocatedPoint, Path, PathFollowing, branch_direction, switched, tangent_at
 from .staged_function import Role
@@ -149,6 +150,8 @@ class _Sequence:
 
     def run(self) -> Extremum:
         try:
+            if self.relaxed:
+                self._enter_feasible_set()
             self._find_fold()
             self._switch_branch()
             for name in self.wanted.parameters[self.wanted.n_first :]:
@@ -170,11 +173,16 @@ class _Sequence:
             fixed[RELAXATION] = self.kappa
         return ExtendedSystem(problem=self.problem, fixed=fixed, adjoint=True, objective=self.wanted.objective)
 
+    def _enter_feasible_set(self) -> None:
+        fixed = {
+            k: v for k, v in self._system(nontrivial=False).fixed.items() if k in self.problem.names_of(Role.MONITOR)
+        }
+        start = feasible_start(self.method.path, self.problem, fixed, self.wanted.bounds)
+        if not start.found:
+            raise _Stuck(start.reason)
+        self.problem = start.problem
+
     def _find_fold(self) -> None:
-        for name in self.problem.names_of(Role.INEQUALITY):
-            value = float(self.problem.stage(name).values(self.problem.start)[0])
-            if value >= 0.0:
-                raise _Stuck(f"the start must satisfy the inequality '{name}' strictly: it is {value:.3g}, not < 0")
         system = self._system(nontrivial=False)
         x = system.first_point(kappa=self.kappa)
         better = self._uphill(system, x)

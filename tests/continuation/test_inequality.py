@@ -43,7 +43,18 @@ def test_before_tightening_the_optimum_is_that_of_the_barrier():
     assert -system.parameter(x, "d.limit") * (x[0] + x[1] - 2.0) == pytest.approx(0.05, abs=1e-10)
 
 
-def test_the_start_must_be_feasible():
+def test_an_infeasible_start_is_moved_inside_first():
     found = nearest(-1.0)
+    assert found.converged, found.reason
+    np.testing.assert_allclose(found.x[:2], [0.0, -1.0], atol=1e-8)
+
+
+def test_no_feasible_solution_on_the_path():
+    problem = ZeroProblem().add_variables("x", [0.0, 0.1]).add_monitor("f", lambda x: x[0] ** 2 + x[1] ** 2, "x")
+    problem = problem.add_parameters(("x1", "x2"), "x").add_inequality("limit", lambda x: 1 + x[0] ** 2, "x")
+    wanted = ExtremumProblem(
+        problem=problem, objective="f", parameters=("x1", "x2"), bounds={"x1": (-2.0, 2.0), "x2": (-2.0, 2.0)}
+    )
+    found = SuccessiveContinuation().solve(wanted)
     assert not found.converged
-    assert "must satisfy the inequality 'limit' strictly: it is 1.1" in found.reason
+    assert "violates the inequality 'limit' by 1, and so does its path: 'x1' reached its bound" in found.reason
