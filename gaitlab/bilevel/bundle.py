@@ -141,10 +141,8 @@ class _Search:
         chosen = others[: self._method.size - 2] + [centre]
         return [*chosen, cuts[-1]] if cuts[-1] is not centre else chosen
 
-    def _model_step(
-        self, centre: _Cut, cuts: list[_Cut], errors: np.ndarray
-    ) -> tuple[float, np.ndarray] | None:
-        """v and d of the quadratic program (7.18)."""
+    def _model_step(self, centre: _Cut, cuts: list[_Cut], errors: np.ndarray) -> tuple[float, np.ndarray] | None:
+        """V and d of the quadratic program (7.18)."""
         n, allowed = centre.x.size, self._objective.allowed
         slopes = np.array([cut.g for cut in cuts])
         unit = max(float(np.linalg.norm(centre.g)), 1e-12)

@@ -30,6 +30,9 @@ class GaussNewton:
     damping: float = 1e-4
     """First damping factor, relative to the diagonal of J'J."""
     max_damping: float = 1e8
+    reach: float = 1.0
+    """Largest first step of a parameter relative to its size; a larger one may jump over a change of the lower
+    level's active set onto a plateau where the fit does not depend on it."""
     seconds: float = 600.0
     """Wall time after which the search stops [s]."""
 
@@ -78,13 +81,15 @@ class _Search:
     response: Response
     began: float
     damping: float = field(init=False)
+    reach: float = field(init=False)
     weight: float = 0.0
     """Penalty of the violation of upper-level constraints."""
 
     def __post_init__(self) -> None:
-        self.damping = self.method.damping
+        self.damping, self.reach = self.method.damping, self.method.reach
         self.problem = self.lower.problem
         self.allowed = ParameterSet(self.problem)
+        self.size = np.maximum(np.abs(self.response.p[self.allowed.index]), 1e-3)
 
     def run(self) -> Stop:
         for iteration in range(self.method.max_iter):
@@ -109,7 +114,8 @@ class _Search:
         rows = self._rows(slopes)
         failed: Response | None = None
         while self.damping <= self.method.max_damping:
-            d = self.allowed.step(y, hessian + self.damping * _scale(hessian), gradient, rows)
+            limit = self.reach * np.maximum(np.abs(y), 0.3 * self.size)
+            d = self.allowed.step(y, hessian + self.damping * _scale(hessian), gradient, rows, limit)
             if d is None:
                 return self._infeasible(iteration)
             promised = -float(gradient @ d + 0.5 * d @ hessian @ d)
@@ -119,8 +125,9 @@ class _Search:
             failed = None if trial.solved else trial
             if trial.solved and self._accept(trial, promised):
                 self.damping = max(self.damping / 8.0, 1e-12)
+                self.reach *= 2.0
                 return None
-            self.damping *= 8.0
+            self.damping, self.reach = self.damping * 8.0, max(0.5 * self.reach, 1e-3)
         return self._end(failed, iteration, stalled=True)
 
     def _rows(self, slopes: Slopes) -> Rows:

@@ -128,7 +128,9 @@ class InverseProblem:
         chosen, total = self._free_weights()
         lowest, highest = self.lbp[chosen].sum(), self.ubp[chosen].sum()
         if not lowest <= total <= highest:
-            raise ProblemError(f"the bounds of the weights sum to {lowest:g}..{highest:g}: they cannot sum to {total:g}")
+            raise ProblemError(
+                f"the bounds of the weights sum to {lowest:g}..{highest:g}: they cannot sum to {total:g}"
+            )
 
     def _free_weights(self) -> tuple[list[int], float]:
         """Free entries of the simplex, and what is left of one for them."""

@@ -131,8 +131,12 @@ class OneLevel:
         lam_g, lam_w = multipliers[: self._n_g], multipliers[self._n_g :]
         stationarity = ca.gradient(nlp.f, nlp.w) + ca.jtimes(nlp.g, nlp.w, lam_g, True) + lam_w
         c = ca.vertcat(nlp.g, nlp.w)
-        low, high, equal = (ca.vertcat(*(c[int(i)] for i in at), ca.SX(0, 1)) for at in (self._low, self._high, self._equal))
-        total = ca.vertcat(*[sum((nlp.p[i] for i in problem.simplex), ca.SX(0))][: int(bool(problem.simplex))], ca.SX(0, 1))
+        low, high, equal = (
+            ca.vertcat(*(c[int(i)] for i in at), ca.SX(0, 1)) for at in (self._low, self._high, self._equal)
+        )
+        total = ca.vertcat(
+            *[sum((nlp.p[i] for i in problem.simplex), ca.SX(0))][: int(bool(problem.simplex))], ca.SX(0, 1)
+        )
         g = ca.vertcat(stationarity, equal, total, problem.upper)
         fixed = np.concatenate([np.zeros(self._n_w), lower[self._equal], np.ones(total.numel())])
         every = [0.5 * ca.sumsqr(problem.residual), g, low - lower[self._low], upper[self._high] - high]
@@ -165,7 +169,7 @@ class OneLevel:
         return np.concatenate([x.w, response.p[self._free], lam[self._equal], z_low, z_high])
 
     def unpack(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """w (n_w,), p (n_p,), lam_w (n_w,), lam_g (n_g,) of variables of shape (n,)."""
+        """W (n_w,), p (n_p,), lam_w (n_w,), lam_g (n_g,) of variables of shape (n,)."""
         sizes = [self._n_w, self._free.size, self._equal.size, self._low.size]
         w, y, lam, z_low, z_high = np.split(v, np.cumsum(sizes))
         p = self._problem.p_nominal.copy()

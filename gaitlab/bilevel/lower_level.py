@@ -21,9 +21,14 @@ from ..nlp.solution import KKTConditions, NLPSolution
 from ..nlp.solver import Multipliers, NLPSolver, PreparedSolver
 from .active_system import ActiveSystem, KKTPattern, LocalModel, PrimalDual
 from .inverse_problem import InverseProblem
+from .multiplier_estimate import estimate_multipliers
 
 ACCEPT = 1e-6
 """A lower-level solution with larger KKT residuals, relative to 1 + |grad f|, is not used."""
+
+
+CONFIRM = 1e-3
+"""A start with KKT residuals below this, relative to the gradient, is taken for a solution and only polished."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,8 +101,23 @@ class LowerLevel:
         """Iterations of the lower level's solvers so far."""
 
     def start(self, w0: np.ndarray, p: np.ndarray) -> Response:
-        """Solve from a cold start w0, shape (n_w,), for p, shape (n_p,)."""
-        return self.response(self._polished(self._counted(self._solver.solve(w0, p)), p), p)
+        """Solve from a start w0, shape (n_w,), for p, shape (n_p,); quickly where w0 is a solution already."""
+        solution = self._confirmed(w0, p) or self._polished(self._counted(self._solver.solve(w0, p)), p)
+        return self.response(solution, p)
+
+    def _confirmed(self, w0: np.ndarray, p: np.ndarray) -> NLPSolution | None:
+        """Newton steps from w0 with estimated multipliers; None where w0 is not almost a solution."""
+        f, gradient = self._derivatives.gradient(w0, p)
+        g, jacobian = self._derivatives.jacobian(w0, p)
+        gradient, g = (np.asarray(part.full()).ravel() for part in (gradient, g))
+        point = estimate_multipliers(self.problem.nlp, w0, gradient, g, csr_matrix(jacobian.sparse()))
+        if point is None:
+            return None
+        size = 1.0 + float(np.max(np.abs(gradient), initial=0.0))
+        if not self._conditions.residuals(point.w, point.lam_w, point.lam_g, p).max() <= CONFIRM * size:
+            return None
+        found = self._newton(point, p)
+        return found if found is not None and abs(found.f - float(f)) <= CONFIRM * (1.0 + abs(float(f))) else None
 
     def respond(self, p: np.ndarray, near: Response, slopes: Slopes | None = None) -> Response:
         """Solve for p, shape (n_p,), from a solution nearby; `slopes` at that solution give a better start."""
@@ -170,6 +190,25 @@ class LowerLevel:
         size = 1.0 + float(np.max(np.abs(gradient), initial=0.0))
         return Response(p=p, solution=solution, residual=residual, upper=upper, size=size)
 
+    def _with_multipliers(self, w: np.ndarray, p: np.ndarray) -> PrimalDual:
+        """Least-squares multipliers of the constraints that w, shape (n_w,), fulfils with equality."""
+        nlp = self.problem.nlp
+        gradient = np.asarray(self._derivatives.gradient(w, p)[1].full()).ravel()
+        g, jacobian = self._derivatives.jacobian(w, p)
+        g = np.asarray(g.full()).ravel()
+        c, lower, upper = np.append(g, w), np.append(nlp.lbg, nlp.lbw), np.append(nlp.ubg, nlp.ubw)
+        room = np.maximum(1e-6 * np.maximum(np.abs(c), 1.0), 1e-6)
+        low, high = c - lower <= room, upper - c <= room
+        active = np.flatnonzero(low | high)
+        normals = np.vstack([np.asarray(jacobian.full()), np.eye(w.size)])[active]
+        lam = np.zeros(c.size)
+        finite = np.all(np.isfinite(normals)) and np.all(np.isfinite(gradient))
+        if finite:
+            lam[active] = np.linalg.lstsq(normals.T, -gradient, rcond=None)[0]
+        one_sided = lower < upper
+        lam = np.where(one_sided & low, np.minimum(lam, 0.0), np.where(one_sided & high, np.maximum(lam, 0.0), lam))
+        return PrimalDual(w=w, lam_w=lam[g.size :], lam_g=lam[: g.size])
+
     def _newton(self, start: PrimalDual, p: np.ndarray) -> NLPSolution | None:
         """Semismooth Newton from a good start; None where it does not converge."""
         x, smallest = start, np.inf
@@ -180,7 +219,13 @@ class LowerLevel:
             if residuals.max() <= self.settings.newton_tol * (1.0 + float(np.max(np.abs(gradient), initial=0.0))):
                 status = "Newton steps on the active set converged"
                 return NLPSolution(
-                    w=x.w, lam_w=x.lam_w, lam_g=x.lam_g, f=float(f), residuals=residuals, status=status, iterations=iteration
+                    w=x.w,
+                    lam_w=x.lam_w,
+                    lam_g=x.lam_g,
+                    f=float(f),
+                    residuals=residuals,
+                    status=status,
+                    iterations=iteration,
                 )
             # What Newton's method does not improve soon is left to a globalised method.
             if not residuals.max() <= 1e3 * smallest:
@@ -214,6 +259,4 @@ def _predict(near: Response, step: np.ndarray, slopes: Slopes | None) -> PrimalD
     x = _point(near.solution)
     if slopes is None:
         return x
-    return PrimalDual(
-        w=x.w + slopes.w @ step, lam_w=x.lam_w + slopes.lam_w @ step, lam_g=x.lam_g + slopes.lam_g @ step
-    )
+    return PrimalDual(w=x.w + slopes.w @ step, lam_w=x.lam_w + slopes.lam_w @ step, lam_g=x.lam_g + slopes.lam_g @ step)

@@ -37,17 +37,17 @@ class ParameterSet:
         return directions[rank:].T
 
     def step(
-        self, y: np.ndarray, hessian: np.ndarray, gradient: np.ndarray, rows: "Rows | None" = None
+        self, y: np.ndarray, hessian: np.ndarray, gradient: np.ndarray, rows: "Rows | None", limit: np.ndarray
     ) -> np.ndarray | None:
-        """Minimise g'd + d'Hd / 2 with y + d in the set and rows kept; all of shape (n_y,), H (n_y, n_y).
+        """Minimise g'd + d'Hd / 2 with y + d in the set, rows kept and |d| <= limit.
 
-        None where the rows cannot be met together with the set.
+        y, gradient and limit have shape (n_y,), the Hessian (n_y, n_y). None where the rows cannot be met.
         """
         extra = rows or Rows(matrix=np.zeros((0, self.n_y)), lower=np.zeros(0), upper=np.zeros(0))
         n_s = int(self.simplex.any())
         matrix = np.vstack([np.tile(self.simplex.astype(float), (n_s, 1)), extra.matrix])
         lower, upper = np.append(np.zeros(n_s), extra.lower), np.append(np.zeros(n_s), extra.upper)
-        bounds = (self.lower - y, self.upper - y)
+        bounds = np.maximum(self.lower - y, -limit), np.minimum(self.upper - y, limit)
         d = solve_quadratic(hessian, gradient, Rows(matrix=matrix, lower=lower, upper=upper), bounds)
         return None if d is None else np.clip(d, *bounds)
 
