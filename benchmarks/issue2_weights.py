@@ -10,6 +10,7 @@ from gaitlab.bilevel.result import rms
 from gaitlab.errors import NotConverged
 from gaitlab.multibody.dynamics import layout_of
 from gaitlab.nlp.sparse_solution import Status
+from gaitlab.nlp.workers import Workers, usable_processors
 from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.options import AnalysisOptions
 from gaitlab.pipelines.weights import WeightsRequest, usable_strides
@@ -28,18 +29,23 @@ def explained_strides(child: str) -> Iterator[Row]:
     """Rows of one child's straight walk: its most central stride, and the weights of that on the next usable one."""
     strides = usable_strides(_request(child))[0]
     walking_functions(layout_of(strides[0][1].subject))  # compiled before the clock starts
+    with Workers(usable_processors()) as workers:
+        yield from _both_strides(child, [stride for _, stride in strides[:2]], workers)
+    yield Row(quantity="usable strides", value=len(strides), limit="", unit="", subject=child)
+
+
+def _both_strides(child: str, strides: list[MeasuredStride], workers: Workers) -> Iterator[Row]:
     found = []
-    for number, (_, stride) in enumerate(strides[:2], start=1):
+    for number, stride in enumerate(strides, start=1):
         subject = f"{child}, stride {number}"
         try:
-            explanation, seconds = _explain(stride)
+            explanation, seconds = _explain(stride, workers)
         except NotConverged:
             yield Row(quantity="not solved", value=1.0, limit="<= 0", unit="", subject=subject)
             continue
         found.append(explanation)
         yield from _certificate(subject, explanation, seconds)
         yield from _beside_others(subject, explanation.estimate.rms, explanation, "")
-    yield Row(quantity="usable strides", value=len(strides), limit="", unit="", subject=child)
     if len(found) > 1:
         seen, unseen = found
         yield from _beside_others(f"{child}, stride 2", _fit_on(unseen, seen), unseen, ", weights of stride 1")
@@ -61,14 +67,14 @@ def _request(child: str) -> WeightsRequest:
     )
 
 
-def _explain(stride: MeasuredStride) -> tuple[Explanation, tuple[float, float]]:
+def _explain(stride: MeasuredStride, workers: Workers) -> tuple[Explanation, tuple[float, float]]:
     """The explanation, and the seconds for tracking and for the weights."""
     start = time.perf_counter()
     tracked = track(stride)
     middle = time.perf_counter()
     if tracked.solution.status is not Status.SOLVED:
         raise NotConverged(f"tracking: {tracked.solution.status.value}")
-    explanation = explain_tracked(tracked)
+    explanation = explain_tracked(tracked, workers=workers)
     return explanation, (middle - start, time.perf_counter() - middle)
 
 

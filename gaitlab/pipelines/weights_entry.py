@@ -106,10 +106,12 @@ def _notes(found: Explanation) -> list[str]:
     level, settings = found.level, found.level.settings
     notes = [
         f"The states of the body at {len(level.given_nodes)} of {len(found.tracked.stride.times)} instants (at most "
-        f"{1000 * settings.longest_arc:.0f} ms apart) are given to the optimal control problem as boundary values; the "
+        f"{1000 * level.longest_arc:.0f} ms apart) are given to the optimal control problem as boundary values; the "
         "fit counts the instants between them.",
         f"Besides the criteria the cost holds a torque floor of {settings.torque_floor:g} and a smoothness floor of "
         f"{settings.smoothness_floor:g} of their tracked values.",
+        "The standard deviations hold the misfit between those instants, not errors of the given states themselves, to "
+        "which the weights are sensitive. Read differences between strides as a lower bound of what is uncertain.",
     ]
     terms = found.optimum.cost_terms()
     floors = sum(terms[name] for name in FLOORS) / sum(terms.values())

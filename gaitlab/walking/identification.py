@@ -1,11 +1,11 @@
 """The walk as a pure optimal control problem, and the weights that explain it.
 
 The lower level sees the durations and contacts of the stages, the state of the body at the boundaries of short arcs
-(every change between stance and swing, and in between so that no arc is longer than `longest_arc`), and the weighted
-criteria. The arcs are solved one by one (`arcs`). It does not see the measured motion inside the arcs: there is no
-tracking term. Two floors keep it well posed: squared torque, and squared acceleration of the angles. Without the
-second one, segments with little inertia (a swinging foot, the rotation of a stretched leg about its axis) may turn
-freely at almost no torque.
+(every change between stance and swing, and in between so that no arc is longer than `longest_arc` and `longest_share`
+allow), and the weighted criteria. The arcs are solved one by one (`arcs`). It does not see the measured motion inside
+the arcs: there is no tracking term. Two floors keep it well posed: squared torque, and squared acceleration of the
+angles. Without the second one, segments with little inertia (a swinging foot, the rotation of a stretched leg about
+its axis) may turn freely at almost no torque.
 """
 
 from collections.abc import Callable
@@ -44,6 +44,8 @@ class IdentificationSettings:
     criteria: tuple[str, ...] = THESIS
     longest_arc: float = 0.12
     """Longest time [s] between given states."""
+    longest_share: float = 0.125
+    """The same as a share of the stride: who walks with quick steps moves more in the same time."""
     torque_floor: float = 0.01
     """Weight of the squared torques beside criteria that sum to one."""
     smoothness_floor: float = 0.05
@@ -106,7 +108,9 @@ class WalkLevel:
         self.torque = names.index("torque")
         self.all_normalisers = tracked.problem.criteria(tracked.solution.w)
         self.normalisers = self.all_normalisers[self.indices]
-        self.given_nodes = arc_boundaries(tracked.stride.stages, settings.longest_arc)
+        duration = float(tracked.stride.times[-1] - tracked.stride.times[0])
+        self.longest_arc = min(settings.longest_arc, settings.longest_share * duration)
+        self.given_nodes = arc_boundaries(tracked.stride.stages, self.longest_arc)
         self.free = np.setdiff1d(np.arange(len(tracked.stride.times)), self.given_nodes)
         functions = walking_functions(layout_of(tracked.stride.subject)).functions
         self.structure = MechanicalStructure(self._layout(), functions)
