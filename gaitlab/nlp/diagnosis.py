@@ -3,6 +3,7 @@
 import casadi as ca
 import numpy as np
 
+from .derivatives import differentiate
 from .outcome import Outcome
 from .problem import NLP
 
@@ -30,8 +31,10 @@ def blame(nlp: NLP, w: np.ndarray, p: np.ndarray, outcome: Outcome) -> str:
 
 def invalid_function(nlp: NLP, w: np.ndarray, p: np.ndarray) -> str | None:
     """Name a function or gradient that is not finite at w, shape (n_w,), p, shape (n_p,); None where all are."""
-    outputs = [nlp.f, nlp.g, ca.gradient(nlp.f, nlp.w), ca.jtimes(nlp.g, nlp.w, ca.SX.ones(nlp.w.numel(), 1))]
-    f, g, grad, slopes = (np.asarray(out).ravel() for out in ca.Function("finite", [nlp.w, nlp.p], outputs)(w, p))
+    derivatives = nlp.derivatives or differentiate(nlp.w, nlp.p, nlp.f, nlp.g)
+    (f, grad), (g, jacobian) = derivatives.gradient(w, p), derivatives.jacobian(w, p)
+    slopes = ca.mtimes(jacobian, ca.DM.ones(nlp.w.numel()))
+    f, g, grad, slopes = (np.asarray(out.full()).ravel() for out in (f, g, grad, slopes))
     for name, values in [("the objective", f), ("constraint g[{}]", g)]:
         bad = np.flatnonzero(~np.isfinite(values))
         if bad.size:
