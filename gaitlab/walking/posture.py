@@ -38,6 +38,13 @@ FORCE_WEIGHT = 1e-3
 """Weight of squared ground forces in body weights: decides what torques leave open, such as heel against toe."""
 
 
+SOFTNESS = 1e-10
+"""Keeps the balance solvable where two points cannot balance the body; a share of its weight is left then."""
+
+MANY = 256
+"""Postures whose load is remembered: those of one gradient."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class StaticLoad:
     """What it takes to hold a posture."""
@@ -88,10 +95,14 @@ class PostureProblem:
         return float(torques @ torques + self.closeness * np.sum((q - self.measured) ** 2))
 
     def equality(self, q: np.ndarray) -> np.ndarray:
-        """Feet off their places [m], lean of the trunk, what is not balanced, at q (n_q,): shape (3 n_points + 8,)."""
-        places = self._functions["places"]
-        points, lean = (out.full().ravel() for out in places(q))
-        return np.concatenate([points - self._measured_places, lean, self.load(q).unbalanced / self.weight])
+        """Feet off their places [m] and lean of the trunk at q (n_q,), shape (3 n_points + 2,); then the balance.
+
+        What the ground cannot balance [body weights, m], six rows more, is left out where three points stand, as they
+        balance any posture.
+        """
+        points, lean = (out.full().ravel() for out in self._functions["places"](q))
+        balance = np.zeros(0) if self._balanced else self.load(q).unbalanced / self.weight
+        return np.concatenate([points - self._measured_places, lean, balance])
 
     def inequality(self, q: np.ndarray) -> np.ndarray:
         """Pull of the ground in body weights, then joints beyond their ranges [rad], at q (n_q,): shape (n_ic,)."""
@@ -102,10 +113,15 @@ class PostureProblem:
     def black_box(self) -> BlackBoxProblem:
         """The problem for the optimiser; feet first, then the trunk."""
         names = [f"{point} {axis}" for point in self.subject.contacts for axis in "xyz"]
-        names += ["trunk forward", "trunk sideways", *(f"balance {i}" for i in range(ROOT))]
+        names += ["trunk forward", "trunk sideways"]
+        names += [] if self._balanced else [f"balance {i}" for i in range(ROOT)]
         return BlackBoxProblem(
             cost=self.cost, equality=self.equality, inequality=self.inequality, equality_names=tuple(names)
         )
+
+    @cached_property
+    def _balanced(self) -> bool:
+        return int(np.linalg.matrix_rank(self._functions["load"](self.measured)[1].full()[:ROOT], tol=1e-3)) == ROOT
 
     @cached_property
     def _measured_places(self) -> np.ndarray:
@@ -114,7 +130,7 @@ class PostureProblem:
     @cached_property
     def _load_of(self) -> Callable[[bytes], StaticLoad]:
         """Load for the bytes of q; remembers the last ones, as cost and constraints ask for the same posture."""
-        return lru_cache(maxsize=8)(self._computed_load)
+        return lru_cache(maxsize=MANY)(self._computed_load)
 
     def _computed_load(self, q: bytes) -> StaticLoad:
         free, spread = (out.full() for out in self._functions["load"](np.frombuffer(q)))
@@ -122,8 +138,8 @@ class PostureProblem:
         # With the forces in body weights and the torques on the lever, all entries are of order one.
         A, a = spread[ROOT:] / LEVER, free[ROOT:] / (LEVER * self.weight)
         B, b = spread[:ROOT], free[:ROOT] / self.weight
-        kkt = np.block([[A.T @ A + FORCE_WEIGHT * np.eye(n_f), B.T], [B, np.zeros((ROOT, ROOT))]])
-        share = np.linalg.lstsq(kkt, np.concatenate([-A.T @ a, -b]), rcond=1e-12)[0][:n_f] * self.weight
+        kkt = np.block([[A.T @ A + FORCE_WEIGHT * np.eye(n_f), B.T], [B, -SOFTNESS * np.eye(ROOT)]])
+        share = np.linalg.solve(kkt, np.concatenate([-A.T @ a, -b]))[:n_f] * self.weight
         return StaticLoad(
             torques=free[ROOT:] + spread[ROOT:] @ share,
             forces=share.reshape(-1, 3),
@@ -152,6 +168,10 @@ class PostureProblem:
         return (segment_rotations(layout, p, q)[trunk] @ ca.SX(centre / np.linalg.norm(centre)))[:2]
 
 
-def least_load_posture(problem: PostureProblem, method: NullSpaceProjection | None = None) -> BlackBoxSolution:
-    """Coordinates q that load the joints least, from the measured ones."""
-    return (method or NullSpaceProjection()).solve(problem.black_box(), problem.measured)
+METHOD = NullSpaceProjection(cost_tol=1e-4, patience=5, max_iter=300)
+"""Ends when five iterations gain less than a ten-thousandth."""
+
+
+def least_load_posture(problem: PostureProblem, method: NullSpaceProjection = METHOD) -> BlackBoxSolution:
+    """Coordinates q that load the joints least, from the measured ones; which constraint fails is in the reason."""
+    return method.solve(problem.black_box(), problem.measured)

@@ -31,19 +31,21 @@ class Feasible:
 
 def meet_constraints(evaluations: Evaluations, x: np.ndarray, steps: StepLengths, near: float) -> Feasible:
     """Reduce violated constraints from x, shape (n,); inequalities nearer than `near` (a distance in x) are active."""
-    x, equality_rows = meet_equalities(evaluations, x, steps)
+    x, equality_rows = meet_equalities(evaluations, x, steps, near)
     return meet_inequalities(evaluations, x, equality_rows, steps, near)
 
 
-def meet_equalities(evaluations: Evaluations, x: np.ndarray, steps: StepLengths) -> tuple[np.ndarray, np.ndarray]:
+def meet_equalities(
+    evaluations: Evaluations, x: np.ndarray, steps: StepLengths, near: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Algorithm 1 from x, shape (n,): the new x and the gradients of all equalities, shape (n_ec, n).
 
     As printed, line 15 projects a gradient on the null space that its own row, appended in line 10, belongs to, which
     leaves nothing; the rows before it are meant (section 2.4). The costs of lines 26 to 33 are those of the last point.
-    Gradients are computed for all constraints at once, after a move for those that follow: as in the source, a row is
-    that of the point where its own constraint was looked at.
+    Gradients are computed for all constraints at once, after moves longer than `near` anew for those that follow: as in
+    the source, a row is that of the point where its own constraint was looked at.
     """
-    rows = numerical_jacobian(evaluations.equality, x)
+    rows, seen = numerical_jacobian(evaluations.equality, x), x
     for k in range(evaluations.n_equality):
         error = abs(float(evaluations.equality(x)[k]))
         direction = -np.sign(evaluations.equality(x)[k]) * null_space_projection(rows[:k], rows[k])
@@ -51,8 +53,10 @@ def meet_equalities(evaluations: Evaluations, x: np.ndarray, steps: StepLengths)
             continue
         moved = doubling_search(_Distance(evaluations.equality, k), x, direction, steps)
         if np.any(moved != x):
+            far = np.linalg.norm(moved - seen) > near
             x = moved
-            rows[k + 1 :] = numerical_jacobian(evaluations.equality, x)[k + 1 :]
+            if far:
+                rows[k + 1 :], seen = numerical_jacobian(evaluations.equality, x)[k + 1 :], x
     return x, rows
 
 

@@ -70,7 +70,7 @@ class NullSpaceProjection:
     step_tol: float = 1e-4
     """Stop when an outer iteration moves less."""
     cost_tol: float = 1e-6
-    """Stop when the constraints hold and `patience` iterations together change the cost less, relative to 1 + |cost|."""
+    """Stop when constraints hold and `patience` iterations together change the cost less, relative to 1 + |cost|."""
     patience: int = 10
     """The source stops after one iteration with a change of 1e-4, which its own example 4.1 makes while infeasible."""
     tol_violation: float = 1e-3

@@ -3,8 +3,9 @@
 import numpy as np
 from scipy.optimize import nnls
 
-RANK_TOLERANCE = 1e-8
-"""Singular values below this share of the largest count as zero: their rows repeat others."""
+RANK_TOLERANCE = 1e-4
+"""Singular values below this share of the largest count as zero: their rows repeat others. Differences of rows that
+repeat each other grow with the distance from where the constraints hold, which first-order steps leave at 1e-5."""
 
 
 def null_space_projection(rows: np.ndarray, direction: np.ndarray) -> np.ndarray:
@@ -13,10 +14,7 @@ def null_space_projection(rows: np.ndarray, direction: np.ndarray) -> np.ndarray
     :math:`(I - J^T (J J^T)^{-1} J) d`, (5) of the source, with an orthonormal basis of the rows instead of the inverse,
     which repeated or vanishing rows do not have.
     """
-    if not len(rows):
-        return direction
-    _, strengths, basis = np.linalg.svd(rows, full_matrices=False)
-    basis = basis[strengths > RANK_TOLERANCE * max(strengths[0], np.finfo(float).tiny)]
+    basis, _, _ = _row_space(rows)
     return direction - basis.T @ (basis @ direction)
 
 
@@ -38,14 +36,23 @@ def allowed_descent(
     Returns:
         Direction (n,), multipliers of the equalities (n_ec,), of the active inequalities (n_a,).
     """
-    n_ec, columns = len(equality_rows), np.vstack([equality_rows, -equality_rows, inequality_rows])
-    if not len(columns):
-        return -gradient, np.zeros(0), np.zeros(0)
-    lengths = np.linalg.norm(columns, axis=1)
-    scaled = columns / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    try:
-        dual = nnls(scaled.T, -gradient, maxiter=50 * len(columns))[0] / np.where(lengths > 0.0, lengths, 1.0)
-    except RuntimeError:  # It cycles on repeated rows: hold all of them.
-        return -null_space_projection(columns, gradient), np.zeros(n_ec), np.zeros(len(inequality_rows))
-    lam, mu = dual[:n_ec] - dual[n_ec : 2 * n_ec], dual[2 * n_ec :]
-    return -(gradient + equality_rows.T @ lam + inequality_rows.T @ mu), lam, mu
+    basis, strengths, left = _row_space(equality_rows)
+    remaining = -gradient + basis.T @ (basis @ gradient)
+    rows = inequality_rows - (inequality_rows @ basis.T) @ basis
+    lengths = np.linalg.norm(rows, axis=1)
+    # Rows that the equalities imply, but for rounding errors, would point anywhere.
+    meant = lengths > RANK_TOLERANCE * np.maximum(np.linalg.norm(inequality_rows, axis=1), np.finfo(float).tiny)
+    mu = np.zeros(len(rows))
+    if meant.any():
+        mu[meant] = nnls((rows[meant] / lengths[meant, None]).T, remaining, maxiter=100 * len(rows))[0] / lengths[meant]
+    lam = -left @ ((basis @ (gradient + inequality_rows.T @ mu)) / strengths)
+    return remaining - rows.T @ mu, lam, mu
+
+
+def _row_space(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Orthonormal basis of the rows, shape (r, n), singular values (r,) and left vectors (m, r)."""
+    if not len(rows):
+        return rows, np.zeros(0), np.zeros((0, 0))
+    left, strengths, basis = np.linalg.svd(rows, full_matrices=False)
+    kept = strengths > RANK_TOLERANCE * max(strengths[0], np.finfo(float).tiny)
+    return basis[kept], strengths[kept], left[:, kept]

@@ -15,7 +15,7 @@ def evaluations(x, **functions):
 def test_later_equalities_leave_earlier_ones_alone():
     x = np.array([3.0, 2.0, -1.0])
     functions = evaluations(x, equality=lambda x: np.array([x[0] + x[1] - 1.0, x[0] - x[2] + 4.0]))
-    found, rows = meet_equalities(functions, x, STEPS)
+    found, rows = meet_equalities(functions, x, STEPS, 1e-4)
     np.testing.assert_allclose(functions.equality(found), 0.0, atol=1e-5)
     np.testing.assert_allclose(rows, [[1, 1, 0], [1, 0, -1]], atol=1e-6)
 
@@ -31,5 +31,5 @@ def test_inequalities_are_active_near_their_bound():
 def test_constraints_that_repeat_each_other():
     x = np.array([3.0, 2.0])
     functions = evaluations(x, equality=lambda x: np.array([x[0] - 1.0, 2.0 * x[0] - 2.0, 0.0 * x[1]]))
-    found, _ = meet_equalities(functions, x, STEPS)
+    found, _ = meet_equalities(functions, x, STEPS, 1e-4)
     np.testing.assert_allclose(found, [1.0, 2.0], atol=1e-5)
