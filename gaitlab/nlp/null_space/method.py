@@ -98,6 +98,9 @@ class _Run:
     x: np.ndarray
     """Shape (n,)."""
     iterations: int = 0
+    least_violation: float = float("inf")
+    last_gain: int = 0
+    """Iteration that last brought the constraints nearer."""
     started: float = field(default_factory=time.perf_counter)
 
     def run(self) -> BlackBoxSolution:
@@ -116,7 +119,7 @@ class _Run:
             history.append(self.evaluations.cost(self.x))
             if history[-1] < -BOTTOMLESS or np.max(np.abs(self.x)) > BOTTOMLESS:
                 return self._ended(BlackBoxStatus.UNBOUNDED, "the cost falls along a direction that nothing limits")
-            if np.linalg.norm(self.x - before) < self.method.step_tol or self._cost_rests(history):
+            if np.linalg.norm(self.x - before) < self.method.step_tol or self._cost_rests(history) or self._hopeless():
                 return self._judged()
         return self._judged(at_limit=True)
 
@@ -137,6 +140,13 @@ class _Run:
         if len(recent) <= self.method.patience or self._violation()[0] > self.method.tol_violation:
             return False
         return max(recent) - min(recent) < self.method.cost_tol * (1.0 + abs(recent[-1]))
+
+    def _hopeless(self) -> bool:
+        """Whether no constraint has come nearer for twice `patience` iterations."""
+        violation = self._violation()[0]
+        if violation <= self.method.tol_violation or violation < 0.99 * self.least_violation:
+            self.least_violation, self.last_gain = min(violation, self.least_violation), self.iterations
+        return self.iterations - self.last_gain >= 2 * self.method.patience
 
     def _invalid(self) -> str:
         """A sentence where a function has no value."""
@@ -171,10 +181,10 @@ class _Run:
         solved = violation <= self.method.tol_violation and stationarity <= self.method.tol_stationarity * (1.0 + size)
         if solved:
             status, reason = BlackBoxStatus.SOLVED, "constraints and first-order conditions hold"
+        elif violation > self.method.tol_violation and not at_limit:
+            status, reason = BlackBoxStatus.INFEASIBLE, f"{name} stays violated by {violation:.2g}"
         elif at_limit:
             status, reason = BlackBoxStatus.ITERATION_LIMIT, f"{self.method.max_iter} iterations were not enough"
-        elif violation > self.method.tol_violation:
-            status, reason = BlackBoxStatus.INFEASIBLE, f"{name} stays violated by {violation:.2g}"
         else:
             status, reason = (
                 BlackBoxStatus.STALLED,
