@@ -16,6 +16,9 @@ from ..nlp.problem import NLP
 DUAL_REGULARISATION = 1e-11
 """Makes the matrix regular where active constraints repeat each other; a proximal term, so solutions stay exact."""
 
+SINGULAR = 1e-13
+"""An eigenvalue smaller than this, relative to the largest, vanishes."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PrimalDual:
@@ -114,21 +117,34 @@ class ActiveSystem:
         residual = mixed + (self._full @ found)[:n_w]
         return found[:n_w], np.where(self._held[:, None], -residual, 0.0), found[n_w:]
 
-    def is_minimum(self) -> bool:
-        """Inertia: as many negative eigenvalues as active constraints, so the reduced Hessian is positive definite."""
-        dense = self._matrix.toarray()[np.ix_(self._unknown, self._unknown)]
+    def flat_variable(self) -> int | None:
+        """Index of a variable that moves most along a direction without positive curvature; None at a minimum.
+
+        By inertia: at a minimum of full rank the matrix has as many negative eigenvalues as active constraints, and
+        none that vanishes.
+        """
+        unknown = np.flatnonzero(self._unknown)
+        dense = self._matrix.toarray()[np.ix_(unknown, unknown)]
         scale = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(dense)), 1e-8))
-        values = np.linalg.eigvalsh(dense * np.outer(scale, scale))
-        return int(np.sum(values < 0.0)) == int(self._active.sum())
+        values, vectors = np.linalg.eigh(dense * np.outer(scale, scale))
+        vanishing = np.abs(values) <= SINGULAR * max(float(np.abs(values).max(initial=0.0)), 1.0)
+        n_active = int(self._active.sum())
+        if int(np.sum((values < 0.0) & ~vanishing)) == n_active and not vanishing.any():
+            return None
+        primal = np.abs(vectors * scale[:, None])[unknown < self._pattern.n_w]  # (n_free, n)
+        suspects = vanishing if vanishing.any() else values < 0.0
+        shares = primal.max(axis=0, initial=0.0) * suspects
+        return int(unknown[np.argmax(primal[:, np.argmax(shares)])]) if primal.size else None
 
     def _solve(self, rhs: np.ndarray) -> np.ndarray | None:
         if not np.all(np.isfinite(rhs)) or not np.all(np.isfinite(self._matrix.data)):
             return None
         try:
-            self._factors = self._factors or splu(self._matrix)
+            factors: SuperLU = self._factors or splu(self._matrix)
         except RuntimeError:
             return None
-        found = self._factors.solve(rhs)
+        self._factors = factors
+        found = factors.solve(rhs)
         miss = float(np.max(np.abs(self._matrix @ found - rhs), initial=0.0))
         size = float(np.max(np.abs(rhs), initial=0.0))
         return found if np.all(np.isfinite(found)) and miss <= 1e-6 * max(size, 1.0) else None

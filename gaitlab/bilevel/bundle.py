@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .gauss_newton import SINGULAR
 from .inverse_finish import Stop
 from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
@@ -84,7 +85,8 @@ class _Search:
     def run(self) -> Stop:
         first = self._cut(self._objective.best)
         if first is None:
-            return self._stop(InverseStatus.LOWER_LEVEL_FAILED, "the KKT matrix of the lower level is singular", 0)
+            reason = self._objective.lower.not_a_minimum(self._objective.best) or SINGULAR
+            return self._stop(InverseStatus.LOWER_LEVEL_FAILED, reason, 0)
         centre, cuts = first, [first]
         self._t = self._method.radius / max(float(np.linalg.norm(first.g)), 1e-12)
         shrinks = 0

@@ -16,6 +16,8 @@ from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerLevel, LowerSettings, Response, Slopes
 from .parameter_set import ParameterSet, Rows
 
+SINGULAR = "the KKT matrix of the lower level is singular"
+
 
 @dataclass(frozen=True, kw_only=True)
 class GaussNewton:
@@ -95,7 +97,7 @@ class _Search:
         for iteration in range(self.method.max_iter):
             slopes = self.lower.slopes(self.response)
             if slopes is None:
-                reason = "the KKT matrix of the lower level is singular: its solution does not determine all unknowns"
+                reason = self.lower.not_a_minimum(self.response) or SINGULAR
                 return Stop(status=InverseStatus.LOWER_LEVEL_FAILED, reason=reason, iterations=iteration)
             stop = self._step(slopes, iteration + 1)
             if stop is not None:
@@ -168,9 +170,9 @@ class _Search:
         if stalled:
             reason = "no step improves the fit although its linearisation promises so"
             return Stop(status=InverseStatus.STALLED, reason=reason, iterations=iteration)
-        if not self.lower.is_minimum(self.response):
-            reason = "the lower level's point is stationary, but the second-order test for a minimum fails"
-            return Stop(status=InverseStatus.LOWER_LEVEL_FAILED, reason=reason, iterations=iteration)
+        flat = self.lower.not_a_minimum(self.response)
+        if flat is not None:
+            return Stop(status=InverseStatus.LOWER_LEVEL_FAILED, reason=flat, iterations=iteration)
         reason = "no step within the bounds improves the fit to first order"
         return Stop(status=InverseStatus.CONVERGED, reason=reason, iterations=iteration)
 

@@ -21,7 +21,7 @@ from ..nlp.mpcc import MPCC
 from ..nlp.mpcc_solution import MPCCSolution
 from ..nlp.outcome import Outcome
 from ..nlp.solution import KKTConditions, NLPSolution
-from .inverse_finish import Stop, finish, unsolved
+from .inverse_finish import Stop, finish, largest_upper_violation, unsolved
 from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerLevel, LowerSettings, Response
@@ -82,14 +82,21 @@ class PreparedReformulation:
                 stop = Stop(status=InverseStatus.INVALID_NUMBER, reason=invalid, iterations=0)
             return finish(self._lower, response, stop, began)
         found = self._method.solve(self._one_level.pack(response))
-        status, reason = STATUS[found.outcome], found.reason
         end = self._response(found)
-        if status is InverseStatus.CONVERGED and not end.solved:
-            status, reason = InverseStatus.LOWER_LEVEL_FAILED, self._lower.failure(end)
-        elif status is InverseStatus.CONVERGED and not self._lower.is_minimum(end):
-            reason = "the lower level's point is stationary, but the second-order test for a minimum fails"
-            status = InverseStatus.LOWER_LEVEL_FAILED
+        status, reason = self._judge(found, end)
         return finish(self._lower, end, Stop(status=status, reason=reason, iterations=found.iterations), began)
+
+    def _judge(self, found: MPCCSolution, end: Response) -> tuple[InverseStatus, str]:
+        violation, sentence = largest_upper_violation(self._problem, end.upper)
+        if violation > 1e-5:
+            return InverseStatus.INFEASIBLE, f"{sentence}; {found.reason}"
+        if not end.solved:
+            solved = found.outcome is Outcome.SOLVED
+            return (InverseStatus.LOWER_LEVEL_FAILED, self._lower.failure(end)) if solved else _said(found)
+        flat = self._lower.not_a_minimum(end)
+        if flat is not None:
+            return InverseStatus.LOWER_LEVEL_FAILED, f"{flat}; {found.reason}"
+        return _said(found)
 
     def _response(self, found: MPCCSolution) -> Response:
         w, p, lam_w, lam_g = self._one_level.unpack(found.w)
@@ -103,6 +110,10 @@ class PreparedReformulation:
             outcome=found.outcome,
         )
         return self._lower.response(solution, p)
+
+
+def _said(found: MPCCSolution) -> tuple[InverseStatus, str]:
+    return STATUS[found.outcome], found.reason
 
 
 class OneLevel:
@@ -128,7 +139,8 @@ class OneLevel:
         for places, part, sign in [(self._equal, lam, 1.0), (self._low, z_low, -1.0), (self._high, z_high, 1.0)]:
             for k, i in enumerate(places):
                 multipliers[int(i)] += sign * part[k]
-        lam_g, lam_w = multipliers[: self._n_g], multipliers[self._n_g :]
+        every = np.arange(lower.size)
+        lam_g, lam_w = _pick(multipliers, every[: self._n_g]), _pick(multipliers, every[self._n_g :])
         stationarity = ca.gradient(nlp.f, nlp.w) + ca.jtimes(nlp.g, nlp.w, lam_g, True) + lam_w
         c = ca.vertcat(nlp.g, nlp.w)
         low, high, equal = (
@@ -139,13 +151,13 @@ class OneLevel:
         )
         g = ca.vertcat(stationarity, equal, total, problem.upper)
         fixed = np.concatenate([np.zeros(self._n_w), lower[self._equal], np.ones(total.numel())])
-        every = [0.5 * ca.sumsqr(problem.residual), g, low - lower[self._low], upper[self._high] - high]
-        f, g, first_low, first_high = ca.substitute(every, [nlp.p], [p])
+        parts = [0.5 * ca.sumsqr(problem.residual), g, low - lower[self._low], upper[self._high] - high]
+        f, g, first_low, first_high = ca.substitute(parts, [nlp.p], [p])
         n_free, n_z = lam.numel(), z_low.numel() + z_high.numel()
         endless = np.full(self._n_w + n_free, np.inf)
         parameters = problem.lbp[self._free], problem.ubp[self._free]
         return MPCC(
-            w=ca.vertcat(nlp.w, *(nlp.p[int(i)] for i in self._free), lam, z_low, z_high),
+            w=ca.vertcat(nlp.w, _pick(nlp.p, self._free), lam, z_low, z_high),
             f=f,
             g=g,
             lbg=np.concatenate([fixed, problem.lbu]),
@@ -179,3 +191,7 @@ class OneLevel:
         multipliers[self._low] -= z_low
         multipliers[self._high] += z_high
         return w, p, multipliers[self._n_g :], multipliers[: self._n_g]
+
+
+def _pick(vector: ca.SX, places: np.ndarray) -> ca.SX:
+    return ca.vertcat(*(vector[int(i)] for i in places), ca.SX(0, 1))

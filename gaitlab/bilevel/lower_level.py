@@ -156,9 +156,12 @@ class LowerLevel:
             upper=u_w @ dw + u_p.toarray(),
         )
 
-    def is_minimum(self, response: Response) -> bool:
-        """Second-order test: the Hessian is positive definite where the active constraints leave room."""
-        return self._system(_point(response.solution), response.p).is_minimum()
+    def not_a_minimum(self, response: Response) -> str | None:
+        """Second-order test: None at a minimum, else a sentence that names a variable without curvature."""
+        variable = self._system(_point(response.solution), response.p).flat_variable()
+        if variable is None:
+            return None
+        return f"the lower level is stationary but no strict minimum: its objective is not curved along w[{variable}]"
 
     def failure(self, response: Response) -> str:
         """One sentence: why the lower level is not solved for these parameters."""

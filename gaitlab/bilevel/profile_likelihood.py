@@ -97,9 +97,10 @@ class ProfileLikelihood:
                 return sign * np.inf, f"{problem.parameter_name(index)} = {value:.4g}: {refit.reason}"
             points[value] = refit.objective
             if refit.objective > limit:
-                part = (limit - last_objective) / (refit.objective - last_objective)
-                # The excess grows quadratically near the minimum, so its root is interpolated.
-                return last_value + (value - last_value) * float(np.sqrt(max(part, 0.0))), ""
+                # The excess grows quadratically, so its root is interpolated.
+                excess = np.array([last_objective, limit, refit.objective]) - result.objective
+                low, middle, high = np.sqrt(np.maximum(excess, 0.0))
+                return last_value + (value - last_value) * float((middle - low) / (high - low)), ""
             before, step = refit, step * self.growth
         return sign * np.inf, ""
 

@@ -74,10 +74,11 @@ def conclude(objective: ReducedObjective, stop: Stop, began: float) -> InverseRe
     violation, sentence = largest_upper_violation(objective.lower.problem, objective.best.upper)
     if stop.status is InverseStatus.CONVERGED and violation > 1e-4:
         stop = Stop(status=InverseStatus.INFEASIBLE, reason=sentence, iterations=stop.iterations)
-    elif stop.status is InverseStatus.CONVERGED and not objective.lower.is_minimum(objective.best):
-        reason = "the lower level's point is stationary, but the second-order test for a minimum fails"
-        stop = Stop(status=InverseStatus.LOWER_LEVEL_FAILED, reason=reason, iterations=stop.iterations)
-    elif objective.failures and stop.status is not InverseStatus.CONVERGED:
+    elif stop.status is InverseStatus.CONVERGED:
+        flat = objective.lower.not_a_minimum(objective.best)
+        if flat is not None:
+            stop = Stop(status=InverseStatus.LOWER_LEVEL_FAILED, reason=flat, iterations=stop.iterations)
+    elif objective.failures:
         reason = f"{stop.reason}; {objective.failures} points without a solution, last: {objective.last_failure}"
         stop = Stop(status=stop.status, reason=reason, iterations=stop.iterations)
     return finish(objective.lower, objective.best, stop, began)

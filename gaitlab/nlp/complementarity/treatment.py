@@ -82,7 +82,8 @@ class PreparedTreatment:
             return self._crossover.certify(w0, p, end, 0)
         end = follow(self._solver, self._settings.schedule, start, p, self._is_done)
         w = end.w[: problem.w.numel()]
-        if not self._settings.crossover:
+        # What crashed or hung on the way would do so again.
+        if not self._settings.crossover or end.outcome in (Outcome.CRASHED, Outcome.TIME_LIMIT):
             return self._crossover.certify(w, p, end, end.iterations)
         return self._crossover.finish(end, w, p)
 
