@@ -15,6 +15,9 @@ import issue2_kinematics  # noqa: F401 - registers its measurements
 import issue2_main_job  # noqa: F401 - registers its measurements
 import issue2_weights  # noqa: F401 - registers its measurements
 import issue3_continuation  # noqa: F401 - registers its measurements
+import issue3_minimax  # noqa: F401 - registers its measurements
+import issue3_mpcc  # noqa: F401 - registers its measurements
+import issue3_null_space  # noqa: F401 - registers its measurements
 import issue3_ocp  # noqa: F401 - registers its measurements
 from registry import MEASUREMENTS, ROOT, Measurement, holds
 
