@@ -16,4 +16,8 @@ def view(
     """Play the measured and the model-optimal walk in the browser, until interrupted."""
     if not directory.is_dir():
         raise InvalidRecording(f"{directory} is not a folder: give the --out folder of gaitlab analyse")
-    open_viewer(directory, port)
+    open_viewer(directory, port, on_open=_tell)
+
+
+def _tell(address: str) -> None:
+    typer.echo(f"{address} shows the walk; Ctrl+C ends it")
