@@ -13,7 +13,10 @@ from ..errors import NotConverged, OutputError
 from ..pipelines.benchmark_tables import (
     FORWARD_COLUMNS,
     INVERSE_COLUMNS,
+    PRINTED_FORWARD,
+    PRINTED_INVERSE,
     as_csv,
+    chosen,
     forward_rows,
     inverse_rows,
     published_rows,
@@ -35,14 +38,17 @@ def ocp(
     ),
 ) -> None:
     """Solve the thesis's optimal control problems, confirm the optima, and estimate their weights by every method."""
-    chosen, comparisons = [benchmark(name) for name in problem or BENCHMARKS], list[Comparison]()
+    problems, comparisons = [benchmark(name) for name in problem or BENCHMARKS], list[Comparison]()
     console = Console()
-    for each in chosen:
+    for each in problems:
         console.print(f"{each.title} ...", style="dim")
         comparisons.append(compare(each, method or list(METHODS)))
     forward, inverse = forward_rows(comparisons), inverse_rows(comparisons) + published_rows(comparisons)
-    console.print(_table("Optimal control", FORWARD_COLUMNS, forward))
-    console.print(_table("Inverse problems", INVERSE_COLUMNS, sorted(inverse, key=lambda row: row[0])))
+    console.print(_table("Optimal control", PRINTED_FORWARD, chosen(FORWARD_COLUMNS, forward, PRINTED_FORWARD)))
+    _remarks(console, comparisons)
+    by_problem = sorted(inverse, key=lambda row: row[0])
+    console.print(_table("Inverse problems", PRINTED_INVERSE, chosen(INVERSE_COLUMNS, by_problem, PRINTED_INVERSE)))
+    _failures(console, comparisons)
     files = {"optimal_control.csv": as_csv(FORWARD_COLUMNS, forward), "inverse.csv": as_csv(INVERSE_COLUMNS, inverse)}
     for comparison in comparisons:
         files |= _figures(comparison)
@@ -58,6 +64,18 @@ def _table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) ->
     for row in rows:
         table.add_row(*row)
     return table
+
+
+def _remarks(console: Console, comparisons: Sequence[Comparison]) -> None:
+    for row in forward_rows(comparisons):
+        console.print(f"{row[0]}: {row[FORWARD_COLUMNS.index('status')]}; {row[-1]}.")
+
+
+def _failures(console: Console, comparisons: Sequence[Comparison]) -> None:
+    for comparison in comparisons:
+        for inverse in comparison.inverses:
+            if not inverse.result.converged:
+                console.print(f"{comparison.forward.benchmark.name}, {inverse.method}: {inverse.result.reason}.")
 
 
 def _figures(comparison: Comparison) -> dict[str, str]:

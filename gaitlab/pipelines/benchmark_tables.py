@@ -14,7 +14,18 @@ INVERSE_COLUMNS = (
     "problem", "method", "status", "objective", "estimates", "truth", "lower residual", "iterations",
     "lower iterations", "cold s", "warm s", "thesis s", "times thesis", "times fastest", "reason",
 )  # fmt: skip
+PRINTED_FORWARD = ("problem", "published objective", "our objective", "published duration", "our duration",
+                   "relative difference", "iterations", "seconds")  # fmt: skip
+PRINTED_INVERSE = ("problem", "method", "status", "objective", "estimates", "iterations", "warm s", "thesis s",
+                   "times thesis", "times fastest")  # fmt: skip
+"""The columns that fit on a screen; files have all."""
 UNKNOWN = "-"
+
+
+def chosen(columns: Sequence[str], rows: Sequence[Sequence[str]], wanted: Sequence[str]) -> list[tuple[str, ...]]:
+    """The wanted columns of rows."""
+    places = [columns.index(name) for name in wanted]
+    return [tuple(row[i] for i in places) for row in rows]
 
 
 def forward_rows(comparisons: Sequence[Comparison]) -> list[tuple[str, ...]]:
@@ -59,7 +70,7 @@ def _inverse_row(comparison: Comparison, inverse: Inverse) -> tuple[str, ...]:
     places = [benchmark.problem.parameter_index(name) for name in names]
     estimates = ", ".join(f"{name} {result.p[i]:.5g}" for name, i in zip(names, places, strict=True))
     truth = ", ".join(f"{benchmark.truth[i]:.5g}" for i in places)
-    thesis = benchmark.published_estimate.seconds
+    thesis = benchmark.published_estimate.seconds_of(inverse.method)
     fastest = min(each.warm_seconds for each in comparison.inverses)
     return (
         benchmark.name, inverse.method, str(result.status), f"{result.objective:.8g}", estimates, truth,
@@ -77,5 +88,5 @@ def _published_row(comparison: Comparison) -> tuple[str, ...]:
     seconds = UNKNOWN if published.seconds is None else f"{published.seconds:.3f}"
     return (
         benchmark.name, "thesis, all-at-once", "published", f"{published.objective:.5g}", estimates, "", UNKNOWN,
-        str(published.iterations), UNKNOWN, UNKNOWN, UNKNOWN, seconds, UNKNOWN, UNKNOWN, "other noise",
+        str(published.iterations), UNKNOWN, UNKNOWN, UNKNOWN, seconds, UNKNOWN, UNKNOWN, published.remark,
     )  # fmt: skip

@@ -37,7 +37,7 @@ TREATMENTS = {
 }
 """Of the complementarity of the all-at-once approach."""
 
-SOLVERS = {"ipopt": Ipopt(seconds=30.0), "filtersqp": Uno(seconds=30.0)}
+SOLVERS = {"ipopt": Ipopt(seconds=60.0), "filtersqp": Uno(seconds=120.0)}
 """Of its subproblems, with their limits of time [s]."""
 
 METHODS: Mapping[str, InverseMethod] = {

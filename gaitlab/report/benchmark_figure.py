@@ -43,7 +43,8 @@ def time_courses(
         _circles(axes, i, stage.n_x, measured)
         axes.set_title(name, fontsize="medium")
         axes.set_xlabel("t / T")
-    figure.axes[0].legend(fontsize="x-small")
+    lines, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(lines, labels, loc="outside upper center", ncols=4, fontsize="x-small")
     return _svg(figure)
 
 
@@ -58,7 +59,7 @@ def path_in_plane(optimum: Trajectory, estimates: Mapping[str, Trajectory], titl
         axes.plot(*trajectory.stages[0].x[:, :2].T, color=colour, label=label, linewidth=1.0)
     axes.set_aspect("equal")
     axes.set_title(title)
-    axes.legend(fontsize="small")
+    axes.legend(fontsize="small", loc="lower right")
     return _svg(figure)
 
 
@@ -76,7 +77,7 @@ def arm_postures(optimum: Trajectory, title: str) -> str:
     axes.set_aspect("equal")
     axes.set_xlabel("[m]")
     axes.set_title(title)
-    axes.legend(fontsize="x-small")
+    axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return _svg(figure)
 
 
