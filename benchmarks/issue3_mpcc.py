@@ -17,8 +17,8 @@ from gaitlab.nlp.uno import Uno
 
 COLLECTION = ROOT.parent / "shared" / "mpcc"
 
-# Hatz (2014), Tables 13.1 and 13.2: iterations and penalty parameter l1-lifted, the same l2-lifted, iterations unlifted;
-# None where filterSQP reports infeasibility. Only problems that the shared folder has.
+# Hatz (2014), Tables 13.1 and 13.2: iterations and penalty parameter l1-lifted, the same l2-lifted, iterations
+# unlifted, None where filterSQP reports infeasibility. Only problems that the shared folder has.
 PUBLISHED = {
     "bard1m": (3, 3, 3, 1.5e4, 3), "bard2m": (3, 2, 3, 1e4, 3), "bard3m": (4, 2, 4, 1e4, 4),
     "desilva": (2, 1, 2, 1, 2), "hs044-i": (4, 1, 4, 1e5, 4), "sl1": (1, 1, 1, 1, 1), "bard1": (3, 3, 3, 1e5, 3),
@@ -54,7 +54,7 @@ def collection_with_five_starts() -> Iterator[Row]:
 
 @measurement(issue=3, line=5)
 def filter_sqp_iterations() -> Iterator[Row]:
-    """One subproblem from the file's start with the thesis's penalty parameter, no crossover; sums where all end well."""
+    """One subproblem from the file's start with the thesis's penalty parameter; sums over problems solved all ways."""
     ours, theirs, ends = np.zeros(3), np.zeros(3), np.zeros(3)
     for path in problem_files(COLLECTION):
         name = path.name.removesuffix(".nl").removesuffix(".json")

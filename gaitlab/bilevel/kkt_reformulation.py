@@ -10,7 +10,7 @@ with lambda the multipliers of equations and c the inequalities and bounds. The 
 """
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import casadi as ca
 import numpy as np
@@ -45,6 +45,8 @@ class KKTReformulation:
     method: MPCCMethod = field(default_factory=Relaxation)
     lower: LowerSettings = field(default_factory=LowerSettings)
     """Solves the lower level for the start, and certifies the end."""
+    gauss_newton: bool = False
+    """Whether IPOPT gets the Gauss-Newton Hessian instead of the exact one; Uno differentiates by itself."""
 
     def solve(self, problem: InverseProblem, w0: np.ndarray, p0: np.ndarray) -> InverseResult:
         """Estimate from w0, shape (n_w,), and p0, shape (n_p,).
@@ -65,7 +67,8 @@ class PreparedReformulation:
     def __init__(self, settings: KKTReformulation, problem: InverseProblem) -> None:
         self._problem = problem
         self._one_level = OneLevel(problem)
-        self._method = settings.method.prepare(self._one_level.mpcc)
+        mpcc = self._one_level.mpcc
+        self._method = settings.method.prepare(mpcc if settings.gauss_newton else replace(mpcc, residual=None))
         self._lower = LowerLevel(problem, settings.lower)
         self._conditions = KKTConditions(problem.nlp)
 
@@ -151,14 +154,15 @@ class OneLevel:
         )
         g = ca.vertcat(stationarity, equal, total, problem.upper)
         fixed = np.concatenate([np.zeros(self._n_w), lower[self._equal], np.ones(total.numel())])
-        parts = [0.5 * ca.sumsqr(problem.residual), g, low - lower[self._low], upper[self._high] - high]
-        f, g, first_low, first_high = ca.substitute(parts, [nlp.p], [p])
+        parts = [problem.residual, g, low - lower[self._low], upper[self._high] - high]
+        residual, g, first_low, first_high = ca.substitute(parts, [nlp.p], [p])
         n_free, n_z = lam.numel(), z_low.numel() + z_high.numel()
         endless = np.full(self._n_w + n_free, np.inf)
         parameters = problem.lbp[self._free], problem.ubp[self._free]
         return MPCC(
             w=ca.vertcat(nlp.w, _pick(nlp.p, self._free), lam, z_low, z_high),
-            f=f,
+            f=0.5 * ca.sumsqr(residual),
+            residual=residual,
             g=g,
             lbg=np.concatenate([fixed, problem.lbu]),
             ubg=np.concatenate([fixed, problem.ubu]),

@@ -45,6 +45,9 @@ class MPCC:
     """Upper bounds on `g`, shape (n_g,)."""
     p: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     """Parameters, shape (n_p, 1)."""
+    residual: ca.SX | None = None
+    """Where given, shape (n_m, 1), f is half its sum of squares, and solvers that take second derivatives get the
+    Gauss-Newton approximation: curvature of the residual and of the constraints is left out."""
 
     def __post_init__(self) -> None:
         self._check_shapes()

@@ -33,6 +33,7 @@ METHODS = {
     "bundle": Bundle(tol=1e-12, tol_gradient=1e-7),
     "multi-start": InverseMultiStart(method=GaussNewton(), n_starts=2),
     **{f"{name}-ipopt": KKTReformulation(method=treatment()) for name, treatment in TREATMENTS.items()},
+    "relaxation-ipopt-gauss-newton": KKTReformulation(method=Relaxation(), gauss_newton=True),
     "l1-filtersqp": KKTReformulation(method=LiftingL1(solver=Uno(seconds=20.0))),
 }
 

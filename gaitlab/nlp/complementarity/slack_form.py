@@ -33,6 +33,7 @@ def slack_form(problem: MPCC) -> SlackForm:
         w=ca.vertcat(problem.w, symbols),
         p=problem.p,
         f=problem.f,
+        residual=problem.residual,
         g=ca.vertcat(problem.g, expressions - symbols),
         G=first,
         H=second,

@@ -1,7 +1,7 @@
 """The frame of all treatments: pose subproblems, follow them, cross over to a certified point."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import casadi as ca
 import numpy as np
@@ -15,6 +15,7 @@ from ..outcome import Outcome
 from ..problem import NLP
 from ..solver import NLPSolver
 from .crossover import Crossover, Tolerances
+from .gauss_newton import gauss_newton_derivatives
 from .method import NO_PARAMETERS, PathEnd, Schedule, follow
 from .slack_form import SlackForm
 
@@ -108,6 +109,8 @@ def with_products(form: SlackForm, objective: ca.SX, products: ca.SX, p: ca.SX) 
         lbg=np.concatenate([m.lbg, np.full(n, -np.inf)]),
         ubg=np.concatenate([m.ubg, np.zeros(n)]),
     )
+    if m.residual is not None:
+        nlp = replace(nlp, derivatives=gauss_newton_derivatives(nlp, m.residual, objective - m.f))
     n_original = n_w - form.n_slacks
     remainder = ca.norm_inf(ca.fmin(m.G, m.H)) if m.n_pairs else ca.SX(0)
     return Subproblems(
