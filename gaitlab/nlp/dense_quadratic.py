@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 MAX_ITER = 60
 DIVERGED = 1e15
@@ -114,18 +114,19 @@ class _Iteration:
         qp, residuals = self.qp, self._residuals()
         K = qp.H + (qp.C.T * (self.z / self.s)) @ qp.C
         K[np.diag_indices_from(K)] *= 1.0 + 1e-14
-        try:
-            factor = cho_factor(K, check_finite=False)
-            spread = cho_solve(factor, qp.E.T, check_finite=False)
-            schur = cho_factor(qp.E @ spread + 1e-14 * np.eye(len(qp.e))) if len(qp.e) else None
-        except (LinAlgError, ValueError):
+        factor, failed = dpotrf(K)
+        if failed or not np.all(np.isfinite(factor)):
+            return None
+        spread = dpotrs(factor, qp.E.T)[0]
+        schur, failed = dpotrf(qp.E @ spread + 1e-14 * np.eye(len(qp.e))) if len(qp.e) else (None, 0)
+        if failed:
             return None
 
         def direction(complementarity: np.ndarray) -> tuple[np.ndarray, ...]:
             rhs = -residuals[0] - qp.C.T @ ((self.z * residuals[2] - complementarity) / self.s)
-            dx, dy = cho_solve(factor, rhs, check_finite=False), np.zeros(len(qp.e))
+            dx, dy = dpotrs(factor, rhs)[0], np.zeros(len(qp.e))
             if schur is not None:
-                dy = cho_solve(schur, qp.E @ dx + residuals[1], check_finite=False)
+                dy = dpotrs(schur, qp.E @ dx + residuals[1])[0]
                 dx = dx - spread @ dy
             ds = -residuals[2] - qp.C @ dx
             return dx, dy, ds, -(complementarity + self.z * ds) / self.s

@@ -177,7 +177,7 @@ class Simulated:
         result += x[-1].T @ functions.terminal_hessian(self.states[-1], lam).full() @ x[-1]
         active = np.flatnonzero(mu)
         y = np.concatenate([z[peaks.probes.intervals], self._probe_controls], axis=1)[active]
-        curvature = _blocks(functions.probe_hessian(*peaks.probes.inputs), y.shape[1])[active]
+        curvature = _blocks(functions.probe_hessian(*(part[:, active] for part in peaks.probes.inputs)), y.shape[1])
         slopes = peaks.slope_gradients[active]
         curvature -= peaks.inverse_curvatures[active, None, None] * slopes[:, :, None] * slopes[:, None, :]
         return result + np.tensordot(y, mu[active, None, None] * curvature @ y, ([0, 1], [0, 1]))
@@ -238,7 +238,9 @@ class Simulated:
     def _place(self, intervals: np.ndarray, components: np.ndarray, shares: np.ndarray) -> Probes:
         starts = self.simulation.times[intervals]
         times = starts + shares * self.simulation.step
-        u, du, ddu = (self.simulation.control_matrix(times, order) @ self.w for order in range(3))
+        spline, nodes = self.simulation.spline, self.w.reshape(self.simulation.spline.n_nodes, -1)
+        duration = self.simulation.problem.duration
+        u, du, ddu = (spline.controls(duration, nodes, times, order) for order in range(3))
         return Probes(
             intervals=intervals,
             components=components,

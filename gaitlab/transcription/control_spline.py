@@ -38,6 +38,10 @@ class ControlSpline:
         values = _basis(self.n_nodes, self.ends, duration)(times, derivative)  # (n, n_nodes)
         return np.kron(values[:, None, :], np.eye(n_controls)[None])
 
+    def controls(self, duration: float, nodes: np.ndarray, times: np.ndarray, derivative: int = 0) -> np.ndarray:
+        """Controls or a time derivative of them for nodes (n_nodes, n_u) at times [s], shape (n,); result (n, n_u)."""
+        return _basis(self.n_nodes, self.ends, duration)(times, derivative) @ nodes
+
 
 @lru_cache(maxsize=16)
 def _basis(n_nodes: int, ends: Ends, duration: float) -> CubicSpline:

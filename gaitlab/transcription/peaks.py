@@ -12,7 +12,7 @@ import numpy as np
 from .interval_functions import IntervalFunctions
 
 ROOT_ITERATIONS = 60
-"""Enough to halve an interval down to the last digit; Illinois steps end far earlier."""
+"""Enough to halve an interval down to the last digit; Newton's steps end far earlier."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,19 +110,18 @@ def probe(functions: IntervalFunctions, probes: Probes) -> tuple[np.ndarray, ...
 def _roots(
     functions: IntervalFunctions, place: Place, intervals: np.ndarray, components: np.ndarray, slopes: np.ndarray
 ) -> np.ndarray:
-    """Shares of the intervals at which the slope vanishes: Illinois steps (Dowell and Jarratt, BIT 11, 1971)."""
+    """Shares of the intervals at which the slope vanishes: Newton's steps, or halves where these leave the bracket."""
     low, high = np.zeros(len(intervals)), np.ones(len(intervals))
     at_low, at_high = slopes[intervals, components], slopes[intervals + 1, components]
-    kept = np.zeros(len(intervals))  # 1 where the lower end stayed last time, -1 where the upper one did.
-    shares = high
+    small = 1e-14 * np.abs(slopes).max(axis=0)[components]
+    shares = at_low / (at_low - at_high)
     for _ in range(ROOT_ITERATIONS if len(intervals) else 0):
-        shares = np.clip((low * at_high - high * at_low) / (at_high - at_low), low, high)
-        slope = probe(functions, place(intervals, components, shares))[1]
-        if np.all((np.abs(slope) <= 1e-14 * np.abs(slopes).max(axis=0)[components]) | (high - low < 1e-15)):
+        probes = place(intervals, components, shares)
+        _, slope, curvature = probe(functions, probes)
+        if np.all((np.abs(slope) <= small) | (high - low < 1e-15)):
             break
-        right = slope <= 0.0
-        at_low = np.where(right, np.where(kept > 0, at_low / 2, at_low), slope)
-        at_high = np.where(right, slope, np.where(kept < 0, at_high / 2, at_high))
-        low, high = np.where(right, low, shares), np.where(right, shares, high)
-        kept = np.where(right, 1.0, -1.0)
+        low, high = np.where(slope > 0.0, shares, low), np.where(slope > 0.0, high, shares)
+        step = slope / np.where(curvature < 0.0, curvature * probes.step, -np.inf)
+        newton = shares - np.where(curvature < 0.0, step, np.inf)
+        shares = np.where((newton > low) & (newton < high), newton, 0.5 * (low + high))
     return shares
