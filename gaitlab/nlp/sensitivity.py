@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..errors import NotConverged
 from .banded import BandedLU, kkt_assembly
 from .sparse_problem import Derivatives, SparseProblem
 from .sparse_solution import SparseSolution
@@ -31,7 +32,10 @@ class Sensitivity:
         return self.assembly.negative_eigenvalues(self._band) == self.structure.n_g
 
     def of_objective(self, mixed: np.ndarray) -> np.ndarray:
-        """Derivative of (w, lam_g) when grad f moves by `mixed`, shape (n_w, m); result (n_w + n_g, m)."""
+        """Derivative of (w, lam_g) when grad f moves by `mixed`, shape (n_w, m); result (n_w + n_g, m).
+
+        Raises `errors.NotConverged` where the KKT matrix is singular.
+        """
         rhs = np.zeros((self.structure.n_w + self.structure.n_g, mixed.shape[1]))
         rhs[: self.structure.n_w] = -mixed
         return self._factors().solve(rhs)
@@ -39,7 +43,10 @@ class Sensitivity:
     def _factors(self) -> BandedLU:
         factors = self.assembly.factorise(self._band.copy())
         if factors is None:
-            raise np.linalg.LinAlgError("the KKT matrix of the solution is singular")
+            raise NotConverged(
+                "the optimality conditions of this solution are singular, so it has no sensitivities; "
+                "its constraints depend on each other or it is no strict minimum"
+            )
         return factors
 
     def predict(self, direction: np.ndarray) -> SparseSolution:

@@ -1,6 +1,6 @@
 """Weights of several strides of one person, together."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -87,21 +87,26 @@ def _comparison(comparisons: Sequence[Comparison]) -> Comparison | None:
 
 def _solver(solvers: Sequence[Solver]) -> Solver:
     worst = next((solver for solver in solvers if solver.status != "solved"), solvers[0])
-    residuals = [solver.kkt_residual for solver in solvers]
     return Solver(
         status=worst.status,
-        kkt_residual=None if None in residuals else max(r for r in residuals if r is not None),
+        kkt_residual=_if_all(max, [solver.kkt_residual for solver in solvers]),
         iterations=sum(solver.iterations for solver in solvers),
         seconds=sum(solver.seconds for solver in solvers),
         reduced_hessian=worst.reduced_hessian,
         tracking_rms_rad=_rms_if_all([solver.tracking_rms_rad for solver in solvers]),
+        tracking_seconds=_if_all(sum, [solver.tracking_seconds for solver in solvers]),
+        regularisation_share=_if_all(max, [solver.regularisation_share for solver in solvers]),
         message="; ".join(solver.message for solver in solvers if solver.message),
     )
 
 
 def _rms_if_all(values: Sequence[float | None]) -> float | None:
+    return _if_all(_rms, values)
+
+
+def _if_all(combine: Callable[[list[float]], float], values: Sequence[float | None]) -> float | None:
     known = [value for value in values if value is not None]
-    return _rms(known) if known and len(known) == len(values) else None
+    return combine(known) if known and len(known) == len(values) else None
 
 
 def _rms(values: Sequence[float]) -> float:

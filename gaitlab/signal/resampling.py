@@ -1,11 +1,10 @@
-"""Resampling: cubic interpolation between valid samples, gait cycles on 101 samples."""
+"""Resampling: cubic interpolation between valid samples."""
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
 from gaitlab.signal.runs import runs, valid_rows
 
-CYCLE_SAMPLES = 101  # 0, 1, ... 100 % (design: clinical conventions)
 SNAP = 1e-6  # samples; times this close to the end of a run belong to it
 
 
@@ -29,19 +28,3 @@ def resample(x: np.ndarray, rate: float, at: np.ndarray) -> np.ndarray:
         elif inside.any():
             y[inside] = CubicSpline(np.arange(start, end), x[start:end], axis=0)(position[inside])
     return y
-
-
-def normalise_cycle(x: np.ndarray, rate: float, start: float, end: float, n_samples: int = CYCLE_SAMPLES) -> np.ndarray:
-    """Samples of one gait cycle, 0 to 100 % in equal steps of time.
-
-    Args:
-        x: Samples, shape (n, ...); NaN where missing.
-        rate: Samples per second [Hz].
-        start: Beginning of the cycle [s] from the first sample.
-        end: End of the cycle [s].
-        n_samples: Number of samples, both ends included.
-
-    Returns:
-        Unit of `x`, shape (n_samples, ...).
-    """
-    return resample(x, rate, np.linspace(start, end, n_samples))

@@ -16,7 +16,7 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from ..errors import ProblemError
+from ..errors import NotConverged, ProblemError
 from ..nlp.sensitivity import Sensitivity
 from ..nlp.sparse_solution import SparseSolution, Status
 from .identification import WalkOptimum
@@ -184,7 +184,7 @@ class _Run(Generic[R]):
         theta = self.steps[0].theta + share * self.way
         try:
             predicted = last.response.predict(move)
-        except np.linalg.LinAlgError as error:
+        except NotConverged as error:
             return self._reject(SweepStatus.NO_MINIMUM, str(error))
         response = self.level.respond(theta, predicted)
         solution = response.solution

@@ -16,7 +16,7 @@ def entry(first, sd=0.01, status="solved", rms=0.03):
     return WeightsEntry(
         criteria=criteria,
         fit=Fit(rms_rad=rms, per_joint={"knee": rms}),
-        solver=Solver(status=status, kkt_residual=1e-9, iterations=5, seconds=2.0),
+        solver=Solver(status=status, kkt_residual=1e-9, iterations=5, seconds=2.0, tracking_seconds=3.0),
         comparison=Comparison(equal_weights_rms_rad=0.05, single_criterion_rms_rad={"a": 0.06, "b": None}),
         strides=[stride(first)],
     )
@@ -48,6 +48,8 @@ def test_one_failure_marks_the_whole():
     combined = combine_entries([entry(0.2), entry(0.3, status="not_converged")])
     assert combined.solver.status == "not_converged"
     assert combined.solver.iterations == 10
+    assert combined.solver.tracking_seconds == 6.0
+    assert combined.solver.regularisation_share is None
 
 
 def test_fits_are_pooled_as_root_mean_squares():

@@ -1,16 +1,10 @@
 import numpy as np
 import pytest
 
-from gaitlab.signal.resampling import normalise_cycle, resample
+from gaitlab.signal.resampling import resample
 
 RATE = 100.0
 T = np.arange(200) / RATE
-
-
-def test_a_cycle_has_101_samples_from_strike_to_strike():
-    y = normalise_cycle(np.sin(2 * np.pi * T), RATE, start=0.255, end=1.365)
-    assert y.shape == (101,)
-    assert y == pytest.approx(np.sin(2 * np.pi * np.linspace(0.255, 1.365, 101)), abs=1e-5)
 
 
 def test_samples_themselves_come_back():
