@@ -172,6 +172,7 @@ def _request(
         heading=walk.kinematics.heading,
         criteria=options.criteria,
         seed=options.seed,
+        landing=options.landing,
         processes=options.processes,
     )
 

@@ -9,6 +9,7 @@ from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotFound, ProblemError
 from ..mocap.subject_parameters import LENGTHS, SIDED_ANGLES, SIDED_LENGTHS
 from ..multibody.anthropometry import AnthropometryName
+from ..walking.contact_schedule import Landing
 from ..walking.criteria import THESIS, by_name
 
 MASS_RANGE = (1.0, 500.0)  # [kg]
@@ -33,6 +34,8 @@ class AnalysisOptions:
     weights: bool = True
     """Whether to compute the walk and its weights."""
     seed: int = 0
+    landing: Landing = "soft"
+    """Whether feet come to rest before they touch the floor, or by an impact."""
     processes: int = 0
     """Processes that solve arcs of the walk at the same time; 0: as many as there are processors."""
     redetect_events: bool = False

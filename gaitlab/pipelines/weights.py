@@ -17,7 +17,7 @@ from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
 from ..nlp.workers import Workers, usable_processors
 from ..walking.contact_phases import contact_phases, foot_directions
-from ..walking.contact_schedule import contact_stages
+from ..walking.contact_schedule import Landing, ScheduleSettings, contact_stages
 from ..walking.criteria import by_name
 from ..walking.explanation import Explanation, ExplanationSettings, explain
 from ..walking.identification import IdentificationSettings
@@ -46,6 +46,7 @@ class WeightsRequest:
     """Direction of the gait frame's x axis in the laboratory [rad]."""
     criteria: tuple[str, ...]
     seed: int
+    landing: Landing = "soft"
     processes: int = 0
     """Processes to compute with; 0: as many as there are processors."""
 
@@ -109,6 +110,7 @@ def usable_strides(request: WeightsRequest) -> tuple[list[tuple[Cycle, MeasuredS
     recording = request.recording
     phases = contact_phases(request.subject, request.q, recording.rate, request.events)
     directions = foot_directions(request.subject, request.q, phases)
+    settings = ScheduleSettings(landing=request.landing)
     middle = 0.5 * (recording.n_frames - 1) / recording.rate
     candidates = sorted(
         full_strides(recording.name, request.events), key=lambda c: abs(0.5 * (c.start + c.end) - middle)
@@ -117,7 +119,7 @@ def usable_strides(request: WeightsRequest) -> tuple[list[tuple[Cycle, MeasuredS
     skipped: list[str] = []
     for cycle in candidates:
         try:
-            stages = contact_stages(phases, recording.rate, (cycle.start, cycle.end), directions=directions)
+            stages = contact_stages(phases, recording.rate, (cycle.start, cycle.end), settings, directions)
             start = round(cycle.start * recording.rate) / recording.rate
             usable.append((cycle, measured_stride(request.subject, stages, start, request.q, recording.rate)))
         except InvalidRecording as error:

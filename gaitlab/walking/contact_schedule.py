@@ -2,11 +2,14 @@
 
 A foot that is flat is a rigid body on two points: the distance between heel and toe makes the sixth of their
 coordinates redundant, so the toe's component along the foot is left out, and the heel carries what friction there is in
-this direction. Landings are soft: points come to rest as they touch (design/numerics.md, item 7).
+this direction. Landings are soft by default: points come to rest as they touch (design/numerics.md, item 7). With
+impacts they touch at any speed and are stopped within one short interval of its own, whose forces make up the impulse;
+as that becomes shorter, the jump of the velocities goes to that of a rigid, inelastic impact, M (v+ - v-) = J' Lambda.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -14,6 +17,8 @@ from ..errors import InvalidRecording, ProblemError
 from ..ocp.mechanical import ContactStage
 from .contact_phases import FLAT, FREE, HEEL, TOE
 from .contact_timing import closest_stages, long_runs
+
+Landing = Literal["soft", "impact"]
 
 N_FORCES = 12
 """Force components 3 i + (x, y, z) of the points i in `model.POINTS`."""
@@ -31,6 +36,10 @@ class ScheduleSettings:
     """Fewest intervals of a stage."""
     friction: float = 0.8
     """Coefficient of friction of shoe or skin on a laboratory's floor, dry."""
+    landing: Landing = "soft"
+    """Whether points come to rest before they touch ("soft") or by the force of the floor ("impact")."""
+    impact_time: float = 0.004
+    """Duration of an impact [s]."""
     shortest_flight: float = 0.06
     """Both feet in the air for less than this [s] is an error of the events, for more it is running."""
     longest_flight: float = 0.25
@@ -130,9 +139,18 @@ def contact_stages(
         feet = [_Foot(state=s, offset=6 * k, along=along[k]) for k, s in enumerate(states)]
         duration = n_frames / rate
         n_intervals = max(settings.shortest, round(duration / settings.interval))
-        stages.append(_stage(feet, before, duration, n_intervals, settings.friction))
+        stage = _stage(feet, before, duration, n_intervals, settings.friction)
+        stages += _with_impact(stage, settings.impact_time) if settings.landing == "impact" else [stage]
         before = [*feet]
     return tuple(stages)
+
+
+def _with_impact(stage: ContactStage, time: float) -> list[ContactStage]:
+    """The stage with its landing as a short stage of one interval; as it is where nothing lands."""
+    if not stage.landing:
+        return [stage]
+    impact = replace(stage, duration=time, n_intervals=1, landing=(), label=f"{stage.label} (impact)")
+    return [impact, replace(stage, duration=stage.duration - time, landing=(), grounded=())]
 
 
 def thesis_stages(

@@ -168,8 +168,8 @@ class PostureProblem:
         return (segment_rotations(layout, p, q)[trunk] @ ca.SX(centre / np.linalg.norm(centre)))[:2]
 
 
-METHOD = NullSpaceProjection(cost_tol=1e-4, patience=5, max_iter=300)
-"""Ends when five iterations gain less than a ten-thousandth."""
+METHOD = NullSpaceProjection(cost_tol=5e-5, patience=10, max_iter=300)
+"""Ends when ten iterations together gain less than 5e-5 (1 + cost)."""
 
 
 def least_load_posture(problem: PostureProblem, method: NullSpaceProjection = METHOD) -> BlackBoxSolution:

@@ -4,13 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from demo_stride import demo_stride
 
 from gaitlab.nlp.sparse_solution import Status
 from gaitlab.nlp.workers import Workers
-from gaitlab.pipelines.analyse import Sources, analyse_files
-from gaitlab.pipelines.bundled import demo_folder
-from gaitlab.pipelines.options import AnalysisOptions
-from gaitlab.pipelines.weights import WeightsRequest, usable_strides
 from gaitlab.walking.arcs import part_of_stages
 from gaitlab.walking.identification import AFAR, IdentificationSettings, WalkLevel
 from gaitlab.walking.tracking import track
@@ -20,19 +17,7 @@ THETA = np.array([0.4, 0.3, 0.2, 0.1])
 
 @pytest.fixture(scope="module")
 def level():
-    folder = demo_folder("demo_cp_child")
-    options = AnalysisOptions(weights=False)
-    trial = analyse_files(Sources(static=folder / "static.c3d", walks=(folder / "walk1.c3d",)), options).trials[0]
-    request = WeightsRequest(
-        recording=trial.recording,
-        events=trial.events,
-        subject=trial.subject,
-        q=trial.motion.q,
-        heading=trial.kinematics.heading,
-        criteria=options.criteria,
-        seed=0,
-    )
-    return WalkLevel(track(usable_strides(request)[0][0][1]), IdentificationSettings())
+    return WalkLevel(track(demo_stride()), IdentificationSettings())
 
 
 @pytest.fixture(scope="module")

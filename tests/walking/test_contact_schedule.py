@@ -40,6 +40,17 @@ def test_a_normal_stride():
     np.testing.assert_array_equal([stage.data for stage in stages], [[1, 1], [1, 0], [1, 0], [1, 1], [0, 1], [0, 1]])
 
 
+def test_an_impact_is_a_short_stage_of_its_own_without_soft_landing():
+    phases = phases_of([*STRIDE, ("flat", "toe", 1)])
+    end = (len(phases) - 1) / RATE
+    stages = contact_stages(phases, RATE, (0.0, end), ScheduleSettings(landing="impact", impact_time=0.005))
+    impacts = [stage for stage in stages if stage.label.endswith("(impact)")]
+    assert [stage.label.split()[0] for stage in impacts] == ["heel-toe", "flat-free", "toe-heel", "free-flat"]
+    assert all(stage.duration == 0.005 and stage.n_intervals == 1 and stage.grounded for stage in impacts)
+    assert all(stage.landing == () for stage in stages)
+    assert sum(stage.duration for stage in stages) == pytest.approx(end)
+
+
 def test_components_of_a_normal_stride():
     first, second, third, fourth, *_ = stages_of(STRIDE)
     assert first.active == first.landing == (0, 1, 2, 9, 10, 11)

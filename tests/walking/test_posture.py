@@ -93,4 +93,4 @@ def test_the_optimum_is_that_of_slsqp(problem):
     theirs = minimize(problem.cost, problem.measured, method="SLSQP", constraints=constraints)
     assert ours.solved
     assert theirs.success
-    assert ours.cost == pytest.approx(theirs.fun, rel=0.02)
+    assert ours.cost == pytest.approx(theirs.fun, rel=0.01)

@@ -1,0 +1,30 @@
+"""The first stride of a bundled demo walk, ready to be tracked."""
+
+from functools import lru_cache
+
+from gaitlab.pipelines.analyse import Sources, analyse_files
+from gaitlab.pipelines.bundled import demo_folder
+from gaitlab.pipelines.options import AnalysisOptions
+from gaitlab.pipelines.weights import WeightsRequest, usable_strides
+
+
+@lru_cache(maxsize=1)
+def _trial(child):
+    folder = demo_folder(child)
+    sources = Sources(static=folder / "static.c3d", walks=(folder / "walk1.c3d",))
+    return analyse_files(sources, AnalysisOptions(weights=False)).trials[0]
+
+
+def demo_stride(child="demo_cp_child", landing="soft"):
+    trial = _trial(child)
+    request = WeightsRequest(
+        recording=trial.recording,
+        events=trial.events,
+        subject=trial.subject,
+        q=trial.motion.q,
+        heading=trial.kinematics.heading,
+        criteria=AnalysisOptions().criteria,
+        seed=0,
+        landing=landing,
+    )
+    return usable_strides(request)[0][0][1]
