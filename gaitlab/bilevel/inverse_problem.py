@@ -86,6 +86,20 @@ class InverseProblem:
             p[chosen] = _project_on_simplex(p0[chosen], (self.lbp[chosen], self.ubp[chosen]), total)
         return p
 
+    def lower_start(self, w0: np.ndarray) -> np.ndarray:
+        """Start of the lower level, checked; shape (n_w,).
+
+        Raises:
+            ProblemError: w0 has another shape or an entry that is not a number.
+        """
+        n_w = self.nlp.w.numel()
+        if w0.shape != (n_w,):
+            raise ProblemError(f"w0 must have shape ({n_w},), got {w0.shape}")
+        bad = np.flatnonzero(~np.isfinite(w0))
+        if bad.size:
+            raise ProblemError(f"w0[{bad[0]}] is {w0[bad[0]]}: give a finite number")
+        return w0
+
     def _check_shapes(self) -> None:
         n_p, n_u = self.n_p, self.upper.numel()
         expected = {"free": n_p, "lbp": n_p, "ubp": n_p, "p_nominal": n_p, "lbu": n_u, "ubu": n_u}

@@ -77,6 +77,7 @@ class PreparedReformulation:
         began = time.perf_counter()
         self._lower.iterations = 0
         p = self._problem.start(p0)
+        w0 = self._problem.lower_start(w0)
         invalid = self._lower.invalid(w0, p)
         response = self._lower.start(w0, p)
         if not response.solved:

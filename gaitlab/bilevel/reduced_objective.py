@@ -59,6 +59,7 @@ def begin(
     """First response from w0, shape (n_w,), and p0, shape (n_p,), or the result that says why there is none."""
     began = time.perf_counter()
     lower, p = LowerLevel(problem, settings), problem.start(p0)
+    w0 = problem.lower_start(w0)
     invalid = lower.invalid(w0, p)
     response = lower.start(w0, p)
     if response.solved:

@@ -82,7 +82,8 @@ class UnoCall:
                 lbx=bounds.lbw, ubx=bounds.ubw, lbg=bounds.lbg, ubg=bounds.ubg,
             )  # fmt: skip
         except RuntimeError as error:
-            return no_answer(request, str(error).strip().splitlines()[-1], "exception")
+            reason = str(error).strip().splitlines()[-1].split(": ", 1)[-1]
+            return no_answer(request, f"Uno gave up: {reason}", "exception")
         stats = self._solver.stats()
         w, lam_w, lam_g = (np.asarray(out[key]).ravel() for key in ("x", "lam_x", "lam_g"))
         return UnoAnswer(

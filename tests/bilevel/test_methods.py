@@ -20,6 +20,7 @@ from gaitlab.bilevel.gauss_newton import GaussNewton
 from gaitlab.bilevel.inverse_multi_start import InverseMultiStart
 from gaitlab.bilevel.inverse_result import InverseStatus
 from gaitlab.bilevel.kkt_reformulation import KKTReformulation
+from gaitlab.errors import ProblemError
 from gaitlab.nlp.complementarity.lifting import LiftingL1, LiftingL2
 from gaitlab.nlp.complementarity.penalty import Penalty
 from gaitlab.nlp.complementarity.relaxation import Relaxation
@@ -34,7 +35,7 @@ METHODS = {
     "multi-start": InverseMultiStart(method=GaussNewton(), n_starts=2),
     **{f"{name}-ipopt": KKTReformulation(method=treatment()) for name, treatment in TREATMENTS.items()},
     "relaxation-ipopt-gauss-newton": KKTReformulation(method=Relaxation(), gauss_newton=True),
-    "l1-filtersqp": KKTReformulation(method=LiftingL1(solver=Uno(seconds=20.0))),
+    "l1-filtersqp": KKTReformulation(method=LiftingL1(solver=Uno(seconds=5.0))),
 }
 
 
@@ -102,3 +103,18 @@ def test_upper_level_constraints_out_of_reach_are_named(method):
     result = solve(method, out_of_reach())
     assert result.status is InverseStatus.INFEASIBLE
     assert "misses its bounds" in result.reason
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    ("w0", "p0", "sentence"),
+    [
+        (np.zeros(3), np.zeros(1), r"w0 must have shape \(2,\)"),
+        (np.array([0.0, np.nan]), np.zeros(1), r"w0\[1\] is nan"),
+        (np.zeros(2), np.zeros(2), r"p0 must have shape \(1,\)"),
+        (np.zeros(2), np.array([np.inf]), r"p0 of p\[0\] is inf"),
+    ],
+)
+def test_starts_of_wrong_shape_or_without_numbers_are_refused(method, w0, p0, sentence):
+    with pytest.raises(ProblemError, match=sentence):
+        METHODS[method].solve(clipped(), w0, p0)
