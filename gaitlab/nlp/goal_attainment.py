@@ -101,6 +101,7 @@ class _Search:
                 return self._solution(MinimaxStatus.UNBOUNDED, f"the largest value fell below {BOTTOMLESS:g}", dual)
             if not self._step():
                 return self._stuck()
+        self.iterations = self.method.max_iter
         return self._solution(MinimaxStatus.ITERATION_LIMIT, f"{self.method.max_iter} iterations were not enough")
 
     def _step(self) -> bool:
