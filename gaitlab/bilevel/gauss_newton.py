@@ -6,7 +6,7 @@ upper-level constraints are curved.
 """
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,7 +15,10 @@ from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerLevel, LowerSettings, Response, Slopes
 from .parameter_set import ParameterSet, Rows
+from .plateau import put_back
 
+SHORT_REACH = 0.1
+"""Reach of the second search after an end on a plateau."""
 SINGULAR = "the KKT matrix of the lower level is singular"
 
 
@@ -64,6 +67,7 @@ class PreparedGaussNewton:
         lower = self._lower
         lower.iterations = 0
         p = self._problem.start(p0)
+        w0 = self._problem.lower_start(w0)
         invalid = lower.invalid(w0, p)
         response = lower.start(w0, p)
         if invalid is not None and not response.solved:
@@ -73,7 +77,24 @@ class PreparedGaussNewton:
             return finish(lower, response, unsolved(lower, response, 0), began)
         search = _Search(self._settings, lower, response, began)
         stop = search.run()
-        return finish(lower, search.response, stop, began)
+        result = finish(lower, search.response, stop, began)
+        return self._off_the_plateau(search.response, result, p, began)
+
+    def _off_the_plateau(self, end: Response, result: InverseResult, p0: np.ndarray, began: float) -> InverseResult:
+        """Where the fit does not tell a parameter, go back to its first value and come again with shorter steps."""
+        p = put_back(result, p0)
+        if p is None:
+            return result
+        response = self._lower.respond(self._problem.start(p), end)
+        if not response.solved:
+            return result
+        careful = replace(self._settings, reach=min(SHORT_REACH, self._settings.reach))
+        search = _Search(careful, self._lower, response, began)
+        stop = search.run()
+        again = finish(
+            self._lower, search.response, replace(stop, iterations=stop.iterations + result.iterations), began
+        )
+        return again if again.converged and again.objective < result.objective else result
 
 
 @dataclass

@@ -11,6 +11,7 @@ from ..bilevel.gauss_newton import GaussNewton
 from ..bilevel.inverse_problem import InverseProblem
 from ..bilevel.inverse_result import InverseResult
 from ..bilevel.kkt_reformulation import KKTReformulation
+from ..bilevel.plateau import OffThePlateau
 from ..errors import NotFound
 from ..nlp.complementarity.lifting import LiftingL1, LiftingL2
 from ..nlp.complementarity.penalty import Penalty
@@ -42,10 +43,10 @@ SOLVERS = {"ipopt": Ipopt(seconds=60.0), "filtersqp": Uno(seconds=120.0)}
 
 METHODS: Mapping[str, InverseMethod] = {
     "gauss-newton": GaussNewton(),
-    "derivative-free": DerivativeFree(),
-    "bundle": Bundle(),
+    "derivative-free": OffThePlateau(method=DerivativeFree()),
+    "bundle": OffThePlateau(method=Bundle()),
     **{
-        f"{name}-{solver}": KKTReformulation(method=treatment(solver=SOLVERS[solver]))
+        f"{name}-{solver}": OffThePlateau(method=KKTReformulation(method=treatment(solver=SOLVERS[solver])))
         for solver in SOLVERS
         for name, treatment in TREATMENTS.items()
     },
