@@ -20,7 +20,7 @@ class Feasible:
     """Where the constraints are met as far as possible, and their gradients there."""
 
     x: np.ndarray
-    """Shape (n,)."""
+    """Point, shape (n,)."""
     equality_rows: np.ndarray
     """Gradients of the equalities, shape (n_ec, n)."""
     active: np.ndarray

@@ -37,7 +37,7 @@ class BlackBoxSolution:
     """Point with its certificate, from fresh central differences."""
 
     x: np.ndarray
-    """Shape (n,)."""
+    """Point, shape (n,)."""
     cost: float
     violation: float
     """Largest violation of a constraint."""
@@ -96,7 +96,7 @@ class _Run:
     method: NullSpaceProjection
     evaluations: Evaluations
     x: np.ndarray
-    """Shape (n,)."""
+    """Point, shape (n,)."""
     iterations: int = 0
     least_violation: float = float("inf")
     last_gain: int = 0

@@ -34,13 +34,13 @@ class BlackBoxProblem:
     """
 
     cost: Callable[[np.ndarray], float]
-    """f of x, shape (n,)."""
+    """Cost f of x, shape (n,)."""
     equality: Callable[[np.ndarray], np.ndarray] = no_constraints
-    """g_ec of x: shape (n_ec,), most important first."""
+    """Equalities g_ec of x, shape (n,), most important first: shape (n_ec,)."""
     inequality: Callable[[np.ndarray], np.ndarray] = no_constraints
-    """g_ic of x: shape (n_ic,), most important first."""
+    """Inequalities g_ic of x, shape (n,), most important first: shape (n_ic,)."""
     interim: Callable[[np.ndarray], None] = nothing_to_update
-    """Called once per outer iteration, to update what the other functions share (section 3 of the source)."""
+    """Called with x, shape (n,), once per outer iteration, to update what the others share (section 3 of the source)."""
     equality_names: tuple[str, ...] = ()
     """Names for messages; numbers are used when left empty."""
     inequality_names: tuple[str, ...] = ()
