@@ -14,6 +14,7 @@ from typing import Any
 import dfols
 import numpy as np
 
+from ..errors import NotConverged
 from .inverse_finish import Stop
 from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
@@ -47,10 +48,6 @@ class DerivativeFree:
         return conclude(objective, _Search(self, objective, began).run(), began)
 
 
-class _OutOfTime(Exception):
-    pass
-
-
 class _Search:
     """Scaled coordinates x of the free parameters, without the last weight of a simplex."""
 
@@ -79,8 +76,8 @@ class _Search:
                     self._residual, self._x0, rhobeg=self._method.first_radius, rhoend=self._method.last_radius,
                     maxfun=self._method.max_evaluations, **options,
                 )  # fmt: skip
-        except _OutOfTime:
-            return self._stop(InverseStatus.TIME_LIMIT, f"no end within {self._method.seconds:g} s")
+        except NotConverged as error:
+            return self._stop(InverseStatus.TIME_LIMIT, str(error))
         if found.flag in (found.EXIT_SUCCESS, found.EXIT_SLOW_WARNING):
             return self._stop(InverseStatus.CONVERGED, f"the trust region is small: {found.msg}")
         if found.flag == found.EXIT_MAXFUN_WARNING:
@@ -92,7 +89,7 @@ class _Search:
 
     def _residual(self, x: np.ndarray) -> np.ndarray:
         if time.perf_counter() - self._began > self._method.seconds:
-            raise _OutOfTime
+            raise NotConverged(f"no end within {self._method.seconds:g} s")
         response = self._objective.respond(self._parameters(x))
         if response is None:
             # A large, finite value sends the trust region back.

@@ -118,3 +118,13 @@ def test_upper_level_constraints_out_of_reach_are_named(method):
 def test_starts_of_wrong_shape_or_without_numbers_are_refused(method, w0, p0, sentence):
     with pytest.raises(ProblemError, match=sentence):
         METHODS[method].solve(clipped(), w0, p0)
+
+
+@pytest.mark.parametrize("method", [GaussNewton, DerivativeFree, Bundle])
+def test_limits_of_time_and_iterations_are_results(method):
+    """The first checks of the clock come after the first step."""
+    problem = weighted_mean()
+    late = method(seconds=0.0).solve(problem, np.zeros(2), problem.p_nominal)
+    assert late.status is InverseStatus.TIME_LIMIT
+    few = {"max_evaluations": 4} if method is DerivativeFree else {"max_iter": 1}
+    assert method(**few).solve(problem, np.zeros(2), problem.p_nominal).status is InverseStatus.ITERATION_LIMIT
