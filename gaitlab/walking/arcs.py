@@ -60,6 +60,7 @@ class ArcTask:
     layout: MechanicalLayout
     data: MechanicalData
     start: SparseSolution | np.ndarray
+    """Solution, or variables of shape (n_w,)."""
     methods: tuple[InteriorPoint, ...]
 
     def run(self) -> SparseSolution:

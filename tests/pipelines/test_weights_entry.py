@@ -42,7 +42,8 @@ class MadeUp:
             rms=0.02, solution=SimpleNamespace(iterations=20), stride=SimpleNamespace(times=np.linspace(0.0, 1.0, 46))
         )
         self.level = SimpleNamespace(
-            settings=SimpleNamespace(criteria=CRITERIA, longest_arc=0.12, torque_floor=0.01, smoothness_floor=0.05),
+            settings=SimpleNamespace(criteria=CRITERIA, torque_floor=0.01, smoothness_floor=0.05),
+            longest_arc=0.12,
             normalisers=NORMALISERS,
             given_nodes=np.arange(0, 46, 5),
         )
