@@ -94,6 +94,7 @@ class _Distance:
     """How far a constraint is from its bound, on either side."""
 
     constraints: Callable[[np.ndarray], np.ndarray]
+    """Values of all constraints, shape (m,), at x, shape (n,)."""
     index: int
 
     def __call__(self, x: np.ndarray) -> float:

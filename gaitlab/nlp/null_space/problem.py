@@ -40,7 +40,7 @@ class BlackBoxProblem:
     inequality: Callable[[np.ndarray], np.ndarray] = no_constraints
     """Inequalities g_ic of x, shape (n,), most important first: shape (n_ic,)."""
     interim: Callable[[np.ndarray], None] = nothing_to_update
-    """Called with x, shape (n,), once per outer iteration, to update what the others share (section 3 of the source)."""
+    """Called with x, shape (n,), once per outer iteration, to update what the others share (section 3)."""
     equality_names: tuple[str, ...] = ()
     """Names for messages; numbers are used when left empty."""
     inequality_names: tuple[str, ...] = ()
