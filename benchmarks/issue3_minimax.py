@@ -61,8 +61,9 @@ def minimax_seconds() -> Iterator[Row]:
                 wall.append(time.perf_counter() - began)
                 processor.append(time.process_time() - worked)
             limit = "<= 1" if name == "goal attainment" else ""
-            yield Row(quantity=f"best wall time, {name}", value=min(wall), limit=limit, unit="s", subject=subject)
-            yield Row(quantity=f"processor time, {name}", value=min(processor), limit="", unit="s", subject=subject)
+            # One thread: the processor time is the wall time of an idle machine.
+            yield Row(quantity=f"processor time, {name}", value=min(processor), limit=limit, unit="s", subject=subject)
+            yield Row(quantity=f"best wall time, {name}", value=min(wall), limit="", unit="s", subject=subject)
             yield Row(quantity=f"iterations, {name}", value=solution.iterations, limit="", unit="", subject=subject)
 
 
