@@ -87,5 +87,7 @@ def _certificate(solution: MinimaxSolution, subject: str) -> Iterator[Row]:
     yield Row(
         quantity="first-order residual", value=solution.residuals.max(), limit="<= 1e-6", unit="", subject=subject
     )
+    curvature = solution.reduced_curvature
+    yield Row(quantity="smallest reduced curvature", value=curvature, limit=">= 0", unit="", subject=subject)
     yield Row(quantity="equal maxima", value=solution.n_largest, limit="", unit="", subject=subject)
     yield Row(quantity="iterations", value=solution.iterations, limit="", unit="", subject=subject)

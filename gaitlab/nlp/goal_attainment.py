@@ -27,6 +27,7 @@ from .minimax import (
     Multipliers,
     certify,
     estimate_multipliers,
+    reduced_curvature,
 )
 
 NEAR = 0.05
@@ -176,6 +177,7 @@ class _Search:
         return MinimaxSolution(
             w=self.w, value=value, objective=value, peaks=point.values[point.is_peak], equality=point.equality,
             multipliers=dual, residuals=certify(self.problem, self.w, point, dual), status=status, reason=reason,
+            reduced_curvature=reduced_curvature(point, dual) if status is MinimaxStatus.SOLVED else float("nan"),
             iterations=self.iterations, evaluations=self.evaluations, seconds=time.perf_counter() - self.started,
         )  # fmt: skip
 

@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg import null_space
 from scipy.optimize import nnls
 
 from .solution import KKTResiduals
@@ -116,6 +117,9 @@ class MinimaxSolution:
     multipliers: Multipliers = field(repr=False)
     residuals: KKTResiduals
     """Violation of the first-order conditions."""
+    reduced_curvature: float
+    """Smallest eigenvalue of the Lagrangian's Hessian in the directions that the active functions, constraints and
+    bounds leave; infinite where they leave none, not a number where the solve failed."""
     status: MinimaxStatus
     reason: str
     """One sentence: why the method stopped."""
@@ -132,6 +136,11 @@ class MinimaxSolution:
     def is_optimal(self, tol: float) -> bool:
         """Check the first-order conditions to the tolerance `tol`."""
         return self.residuals.max() < tol
+
+    @property
+    def is_minimum(self) -> bool:
+        """Second-order sufficiency (Nocedal and Wright 2006, Theorem 12.6, for the epigraph form)."""
+        return self.reduced_curvature > 0.0
 
 
 def estimate_multipliers(problem: MinimaxProblem, w: np.ndarray, point: MinimaxPoint, near: float) -> Multipliers:
@@ -172,6 +181,16 @@ def certify(problem: MinimaxProblem, w: np.ndarray, point: MinimaxPoint, dual: M
         primal=_norm(np.concatenate([point.equality, outside])),
         complementarity=_norm(dual.mu * (point.values.max() - point.values)),
     )
+
+
+def reduced_curvature(point: MinimaxPoint, dual: Multipliers) -> float:
+    """Smallest curvature of the Lagrangian where functions and bounds with multipliers, and phi, do not change."""
+    n_w = len(dual.lam_w)
+    rows = [point.gradients[dual.mu > 0.0], point.equality_jacobian, np.eye(n_w)[dual.lam_w != 0.0]]
+    tangent = null_space(np.vstack(rows), rcond=1e-9)  # (n_w, n_free)
+    if not tangent.shape[1]:
+        return float("inf")
+    return float(np.linalg.eigvalsh(tangent.T @ point.hessian(dual.mu, dual.lam) @ tangent)[0])
 
 
 def _nonnegative(matrix: np.ndarray, target: np.ndarray) -> np.ndarray:

@@ -31,6 +31,7 @@ def solution(simulation):
 
 def test_published_peak(solution):
     assert solution.status is MinimaxStatus.SOLVED
+    assert solution.is_minimum
     assert solution.n_largest == 8
     assert reaction_force(solution.value) == pytest.approx(PUBLISHED_PEAK, abs=5e-4)
 

@@ -14,6 +14,7 @@ def test_published_peak():
     simulation = AdjointSimulation(problem=two_axis_robot())
     solution = GoalAttainment().solve(simulation, np.zeros(40))
     assert solution.status is MinimaxStatus.SOLVED
+    assert solution.is_minimum
     assert solution.n_largest == 7
     assert tool_speed(solution.value) == pytest.approx(PUBLISHED_PEAK, abs=5e-4)
 

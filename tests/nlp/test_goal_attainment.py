@@ -24,6 +24,7 @@ def test_known_optimum(build):
     assert solution.status is MinimaxStatus.SOLVED
     assert solution.value == pytest.approx(optimum, abs=1e-6)
     assert solution.is_optimal(1e-5)
+    assert solution.is_minimum
 
 
 def test_the_optimum_may_lie_on_a_bound():
@@ -32,6 +33,15 @@ def test_the_optimum_may_lie_on_a_bound():
     assert solution.status is MinimaxStatus.SOLVED
     assert solution.w[0] == 1.5
     assert solution.multipliers.lam_w[0] < 0.0
+
+
+def test_a_stationary_point_need_not_be_a_minimum():
+    """On the circle x^2 + y^2 = 2 the largest of x alone is least at the left; the right end is stationary, too."""
+    problem = SymbolicMinimax(2, lambda w: ([w[0]], [ca.sumsqr(w) - 2.0]))
+    worst, best = (GoalAttainment().solve(problem, np.array([x, 0.0])) for x in (np.sqrt(2.0), -np.sqrt(2.0)))
+    assert worst.status is best.status is MinimaxStatus.SOLVED
+    assert best.is_minimum
+    assert not worst.is_minimum
 
 
 def test_multipliers_sum_to_one():
