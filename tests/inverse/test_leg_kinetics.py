@@ -49,7 +49,7 @@ def differences(walk, kinetics, names):
         letter, first = contact.side[0].upper(), int(np.ceil(contact.start * walk.rate))
         frames = slice(max(first, EDGE), min(int(contact.end * walk.rate) + 1, walk.n_frames - EDGE))
         load = walk.model_outputs[f"{letter}GroundReactionForce"][frames, 2]
-        if not np.nanmax(load) > 5.0:  # N/kg
+        if not np.nan_to_num(load).max() > 5.0:  # N/kg
             continue
         for name in names:
             joint, word = name.split("_")[:2]
