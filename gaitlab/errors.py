@@ -4,6 +4,7 @@
   + ProblemError        a problem is malformed: wrong shape, unknown name, empty grid
   + InvalidRecording    a recording cannot be used: no markers, too short, unreadable
   + InvalidSubject      body measurements are missing or impossible
+  + InvalidReference    reference data (norms, a basis of scores) cannot be used
   + NotConverged        a computation that was asked for did not reach its certificate
   + Cancelled           the caller asked to stop
   + WorkerLost          a process that computed for us ended without a result
@@ -28,6 +29,10 @@ class InvalidRecording(GaitlabError):
 
 class InvalidSubject(GaitlabError):
     """Body measurements are missing or impossible."""
+
+
+class InvalidReference(GaitlabError):
+    """Reference data cannot be used."""
 
 
 class NotConverged(GaitlabError):

@@ -10,6 +10,7 @@ from ..errors import InvalidSubject, NotConverged
 from ..pipelines.analyse import Sources, analyse_files
 from ..pipelines.options import AnalysisOptions
 from ..pipelines.output import make_folder, write_analysis
+from ..pipelines.references import BUNDLED, ReferenceOptions
 from ..report.html import write_report
 from ..walking.criteria import THESIS
 from .progress import progress_bars
@@ -38,6 +39,10 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     file_offsets: Annotated[
         bool, typer.Option(help="Use the static offsets stored in the file, not those computed.")
     ] = False,
+    norms: Annotated[str, typer.Option(help="Reference cohort: a file of 'gaitlab norms build', or none.")] = BUNDLED,
+    match_speed: Annotated[bool, typer.Option(help="Compare with norms of the person's own speed.")] = False,
+    gdi: Annotated[Path | None, typer.Option(help="Basis of the gait deviation index, from norms import-gdi.")] = None,
+    age: Annotated[float | None, typer.Option(help="Age of the person [years], checked against the norms.")] = None,
 ) -> None:
     """Turn a static and walking trials into angles, events, a model, a walk and the weights of its criteria."""
     both = {"leg_length": leg_length, "knee_width": knee_width, "ankle_width": ankle_width}
@@ -51,6 +56,9 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
         trunk_joint=trunk_joint,
         redetect_events=redetect_events,
         static_offsets="file" if file_offsets else "computed",
+        references=ReferenceOptions(
+            norms=norms, gdi=str(gdi or ""), speed="matched" if match_speed else "default", age=age
+        ),
     )
     run_analysis(Sources(static=static, walks=tuple(walks)), options, out)
 

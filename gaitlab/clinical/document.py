@@ -12,6 +12,7 @@ import msgspec
 
 from ..errors import InvalidRecording, OutputError
 from ..mocap.recording import EventKind, EventSource, Side
+from .score_document import ScoresEntry, StridesEntry
 from .spatiotemporal import NormalisedSpatiotemporal, Spatiotemporal
 
 CURVES = (
@@ -82,6 +83,8 @@ class SideSpatiotemporal(msgspec.Struct, frozen=True, kw_only=True):
     normalised: NormalisedSpatiotemporal
     """Means made dimensionless with leg length and gravity (Hof 1996)."""
     cycles: list[Spatiotemporal]
+    normalised_cycles: list[NormalisedSpatiotemporal] = []
+    """Each cycle made dimensionless."""
 
 
 class SpatiotemporalEntry(msgspec.Struct, frozen=True, kw_only=True):
@@ -241,6 +244,10 @@ class Document(msgspec.Struct, frozen=True, kw_only=True):
     settings: dict[str, Any]
     """Every setting that shaped the result, by name."""
     warnings: list[str]
+    strides: StridesEntry | None = None
+    """All strides of all trials: outliers, representative stride, consistency."""
+    scores: ScoresEntry | None = None
+    """Gait variable and profile scores, gait deviation index, and the norms that they refer to."""
 
 
 def schema() -> dict[str, Any]:

@@ -39,13 +39,15 @@ class Spatiotemporal(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class NormalisedSpatiotemporal(msgspec.Struct, frozen=True, kw_only=True):
-    """Dimensionless with leg length l and gravity g: v / sqrt(g l), f / sqrt(g / l), x / l (Hof 1996)."""
+    """Dimensionless with leg length l, gravity g: v / sqrt(g l), f / sqrt(g / l), x / l, t / sqrt(l / g) (Hof 1996)."""
 
     speed: float | None
     cadence: float | None
     stride_length: float | None
     step_length: float | None
     step_width: float | None
+    stride_time: float | None = None
+    step_time: float | None = None
 
 
 def cycle_spatiotemporal(cycle: Cycle, feet: Mapping[Side, np.ndarray], rate: float) -> Spatiotemporal:
@@ -108,6 +110,8 @@ def normalise(values: Spatiotemporal, leg_length: float | None) -> NormalisedSpa
         stride_length=_over(values.stride_length_m, leg_length),
         step_length=_over(values.step_length_m, leg_length),
         step_width=_over(values.step_width_m, leg_length),
+        stride_time=_over(values.stride_time_s, np.sqrt(leg_length / GRAVITY)),
+        step_time=_over(values.step_time_s, np.sqrt(leg_length / GRAVITY)),
     )
 
 

@@ -23,6 +23,7 @@ from .model import motion_warnings, person_model, whole_model_motion
 from .options import AnalysisOptions
 from .pooling import combine_entries
 from .progress import Progress, Step, silent
+from .references import load_references
 from .trial import TrialAnalysis, cycle_curves, full_cycles, trial_spatiotemporal
 from .walk_arrays import measured_arrays
 from .weights import TrialWeights, WeightsRequest, identify_weights
@@ -198,12 +199,14 @@ def _session(static: Recording | None, walk: _Walk, options: AnalysisOptions) ->
         assumed=assumed_parameters(walk.calibration, static, walk.recording, options.parameters),
         settings=_settings(options),
         warnings=static.warnings if static is not None else (),
+        references=load_references(options.references),
     )
 
 
 def _settings(options: AnalysisOptions) -> dict[str, Any]:
     """Every choice by name, as JSON can hold it."""
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(options).items()}
+    plain = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(options).items()}
+    return plain | {"references": options.references.without_paths()}
 
 
 def _entry(trial: TrialAnalysis) -> WeightsEntry | None:

@@ -10,6 +10,7 @@ from .. import __version__
 from ..clinical.cycle_average import average, complete
 from ..clinical.document import (
     CURVES,
+    SIDES,
     Curve,
     CurveSides,
     Document,
@@ -26,6 +27,8 @@ from ..clinical.document import (
 from ..clinical.spatiotemporal import mean, normalise, standard_deviation
 from ..mocap.recording import Recording, Side
 from ..multibody.subject import SubjectModel
+from .references import References
+from .scores import scores_entry, strides_entry
 from .trial import TrialAnalysis
 
 
@@ -39,10 +42,14 @@ class Session:
     assumed: tuple[str, ...]
     settings: Mapping[str, Any]
     warnings: tuple[str, ...]
+    references: References
 
 
 def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: WeightsEntry | None) -> Document:
     """The document of one trial, or of several together."""
+    sides = SpatiotemporalEntry(
+        left=_spatiotemporal(session, trials, "left"), right=_spatiotemporal(session, trials, "right")
+    )
     return Document(
         version=__version__,
         inputs=_inputs(session, trials),
@@ -52,9 +59,7 @@ def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: Weig
             for trial in trials
             for e in trial.events
         ],
-        spatiotemporal=SpatiotemporalEntry(
-            left=_spatiotemporal(session, trials, "left"), right=_spatiotemporal(session, trials, "right")
-        ),
+        spatiotemporal=sides,
         kinematics={
             curve: CurveSides(left=_curve(trials, curve, "left"), right=_curve(trials, curve, "right"))
             for curve in CURVES
@@ -63,7 +68,22 @@ def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: Weig
         quality=_quality(session, trials),
         settings=dict(session.settings),
         warnings=_warnings(session, trials),
+        strides=strides_entry(trials),
+        scores=scores_entry(trials, session.references, _leg_length(session), _speed(sides)),
     )
+
+
+def _leg_length(session: Session) -> float | None:
+    """Mean of both legs, or the one that is known [m]."""
+    known = [value for side in SIDES if (value := session.parameters.get(f"{side}_leg_length")) is not None]
+    return float(np.mean(known)) if known else None
+
+
+def _speed(sides: SpatiotemporalEntry) -> float | None:
+    """Mean of both sides, or the one that is known [m/s]."""
+    known = [s.mean.speed_m_per_s for s in (sides.left, sides.right) if s is not None]
+    speeds = [speed for speed in known if speed is not None]
+    return float(np.mean(speeds)) if speeds else None
 
 
 def _warnings(session: Session, trials: Sequence[TrialAnalysis]) -> list[str]:
@@ -115,12 +135,14 @@ def _spatiotemporal(session: Session, trials: Sequence[TrialAnalysis], side: Sid
     if not cycles:
         return None
     means = mean(cycles)
+    leg = session.parameters.get(f"{side}_leg_length")
     return SideSpatiotemporal(
         n_cycles=len(cycles),
         mean=means,
         sd=standard_deviation(cycles),
-        normalised=normalise(means, session.parameters.get(f"{side}_leg_length")),
+        normalised=normalise(means, leg),
         cycles=cycles,
+        normalised_cycles=[normalise(cycle, leg) for cycle in cycles],
     )
 
 

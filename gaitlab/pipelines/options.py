@@ -11,6 +11,7 @@ from ..mocap.subject_parameters import LENGTHS, SIDED_ANGLES, SIDED_LENGTHS
 from ..multibody.anthropometry import AnthropometryName
 from ..walking.contact_schedule import Landing
 from ..walking.criteria import THESIS, by_name
+from .references import ReferenceOptions
 
 MASS_RANGE = (1.0, 500.0)  # [kg]
 PLAUSIBLE = (
@@ -46,6 +47,8 @@ class AnalysisOptions:
     """Longest gap in a marker that is filled [s]."""
     anthropometry: AnthropometryName = "corrected"
     """Table of segment masses and inertias."""
+    references: ReferenceOptions = field(default_factory=ReferenceOptions)
+    """Norms and scores."""
     trunk_joint: bool = False
     """False: head, arms and trunk are rigid on the pelvis as in the thesis; True: three coordinates more."""
 
