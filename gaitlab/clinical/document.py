@@ -12,6 +12,7 @@ import msgspec
 
 from ..errors import InvalidRecording, OutputError
 from ..mocap.recording import EventKind, EventSource, Side
+from .kinetics_document import EmgEntry, KineticsEntry
 from .score_document import ScoresEntry, StridesEntry
 from .spatiotemporal import NormalisedSpatiotemporal, Spatiotemporal
 
@@ -238,6 +239,10 @@ class Document(msgspec.Struct, frozen=True, kw_only=True):
     events: list[EventEntry]
     spatiotemporal: SpatiotemporalEntry
     kinematics: dict[str, CurveSides]
+    kinetics: KineticsEntry | None = None
+    """Moments, powers and ground reactions, and why some are missing."""
+    emg: EmgEntry | None = None
+    """Null where the files hold no EMG."""
     weights: WeightsEntry | None
     """Null when not asked for, or when nothing could be computed: then `warnings` says why."""
     quality: QualityEntry

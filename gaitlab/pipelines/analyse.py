@@ -10,6 +10,7 @@ from ..errors import InvalidRecording, NotConverged, WorkerLost
 from ..inverse.conventional import ConventionalKinematics, joint_kinematics
 from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
+from ..inverse.leg_kinetics import KineticsSettings
 from ..mocap.c3d import read_c3d
 from ..mocap.events import events_of
 from ..mocap.recording import Event, Recording
@@ -19,6 +20,7 @@ from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap, describe_gaps, fill_gaps
 from .calibration import assumed_parameters, calibrate_walk
 from .documents import Session, document_of
+from .kinetics import trial_kinetics
 from .model import motion_warnings, person_model, whole_model_motion
 from .options import AnalysisOptions
 from .pooling import combine_entries
@@ -125,6 +127,9 @@ def _analyse_walk(subject: SubjectModel, walk: _Walk, options: AnalysisOptions, 
     found, stride_warnings = full_cycles(recording, events)
     progress(Step(stage="whole-model kinematics", trial=recording.name))
     motion = whole_model_motion(subject, recording, kinematics)
+    progress(Step(stage="kinetics", trial=recording.name))
+    choices = KineticsSettings(frame=options.moment_frame, inertia=options.kinetics_inertia)
+    kinetics = trial_kinetics(recording, kinematics, subject, (events, found), choices)
     arrays = measured_arrays(recording, events, subject, motion.q, kinematics.heading)
     weights, reason = None, ""
     if options.weights:
@@ -140,11 +145,13 @@ def _analyse_walk(subject: SubjectModel, walk: _Walk, options: AnalysisOptions, 
         spatiotemporal=trial_spatiotemporal(recording, kinematics, found),
         subject=subject,
         motion=motion,
+        kinetics=kinetics,
         weights=weights,
         arrays=arrays | (dict(weights.arrays) if weights is not None else {}),
         warnings=_trial_warnings(walk)
         + stride_warnings
         + motion_warnings(motion)
+        + kinetics.warnings
         + (weights.warnings if weights is not None else ())
         + ((reason,) if reason else ()),
         not_converged=reason,

@@ -27,6 +27,7 @@ from ..clinical.document import (
 from ..clinical.spatiotemporal import mean, normalise, standard_deviation
 from ..mocap.recording import Recording, Side
 from ..multibody.subject import SubjectModel
+from .kinetics import emg_entry, kinetics_entry
 from .references import References
 from .scores import scores_entry, strides_entry
 from .trial import TrialAnalysis
@@ -64,6 +65,8 @@ def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: Weig
             curve: CurveSides(left=_curve(trials, curve, "left"), right=_curve(trials, curve, "right"))
             for curve in CURVES
         },
+        kinetics=kinetics_entry([trial.kinetics for trial in trials]),
+        emg=emg_entry([trial.kinetics for trial in trials]),
         weights=weights,
         quality=_quality(session, trials),
         settings=dict(session.settings),

@@ -60,11 +60,11 @@ def trial_kinetics(
     recording: Recording,
     kinematics: ConventionalKinematics,
     subject: SubjectModel,
-    events: Sequence[Event],
-    found: Cycles,
+    steps: tuple[Sequence[Event], Cycles],
     settings: KineticsSettings,
 ) -> TrialKinetics:
-    """Kinetics and EMG of one walk, per frame and cut at the foot strikes `found`."""
+    """Kinetics and EMG of one walk, per frame and cut into cycles; `steps` are its events and its cycles."""
+    events, found = steps
     solved, missing, warnings = _solve(recording, kinematics, subject, events, settings)
     curves = {} if solved is None else _cut_curves(solved, found, recording.rate)
     return TrialKinetics(

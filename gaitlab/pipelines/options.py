@@ -7,6 +7,7 @@ from typing import Literal
 
 from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotFound, ProblemError
+from ..inverse.leg_kinetics import InertiaConvention, MomentFrame
 from ..mocap.subject_parameters import LENGTHS, SIDED_ANGLES, SIDED_LENGTHS
 from ..multibody.anthropometry import AnthropometryName
 from ..walking.contact_schedule import Landing
@@ -49,6 +50,10 @@ class AnalysisOptions:
     """Table of segment masses and inertias."""
     references: ReferenceOptions = field(default_factory=ReferenceOptions)
     """Norms and scores."""
+    moment_frame: MomentFrame = "distal"
+    """Axes that joint moments are expressed in."""
+    kinetics_inertia: InertiaConvention = "subject"
+    """Mass properties behind moments and powers: the subject's model, or Plug-in Gait's, to explain a difference."""
     trunk_joint: bool = False
     """False: head, arms and trunk are rigid on the pelvis as in the thesis; True: three coordinates more."""
 

@@ -11,10 +11,12 @@ from ..clinical.document import CURVES, SIDES, Document, write_document
 from ..errors import OutputError
 from ..multibody.urdf import to_urdf
 from .analyse import Analysis, TrialAnalysis
+from .kinetics import kinetics_columns
 
 JOINTS = ("hip", "knee", "ankle")
 ANGLE_DIGITS = 5  # [deg]
 METRE_DIGITS = 7
+KINETICS_DIGITS = 5  # [N*m/kg, W/kg, %, m]
 
 
 @contextmanager
@@ -51,6 +53,9 @@ def _write_trial(trial: TrialAnalysis, document: Document, folder: Path) -> None
     time = np.arange(trial.recording.n_frames) / trial.recording.rate
     write_table(folder / "angles.csv", time, angle_columns(trial.kinematics.angles), ANGLE_DIGITS)
     write_table(folder / "joint_centres.csv", time, centre_columns(trial.kinematics.joint_centres), METRE_DIGITS)
+    solved = trial.kinetics.kinetics
+    if solved is not None:
+        write_table(folder / "kinetics.csv", time, kinetics_columns(solved), KINETICS_DIGITS)
     with _writing(folder / "model.urdf"):
         (folder / "model.urdf").write_text(to_urdf(trial.subject), encoding="utf-8")
     with _writing(folder / "walk.npz"):

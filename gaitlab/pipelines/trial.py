@@ -14,6 +14,7 @@ from ..mocap.cycles import Cycle, full_strides, visible_strides
 from ..mocap.recording import Event, Recording, Side
 from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap
+from .kinetics import TrialKinetics
 from .weights import TrialWeights
 
 Cycles = Mapping[Side, tuple[Cycle, ...]]
@@ -36,6 +37,7 @@ class TrialAnalysis:
     spatiotemporal: Mapping[Side, tuple[Spatiotemporal, ...]]
     subject: SubjectModel
     motion: InverseKinematics
+    kinetics: TrialKinetics
     weights: TrialWeights | None
     arrays: Mapping[str, np.ndarray]
     """Contents of walk.npz; those with one row per stored frame have shape (n_frames, ...)."""

@@ -11,7 +11,7 @@ from gaitlab.clinical.document import CURVES, SIDES
 
 pytestmark = pytest.mark.shared_data
 
-FILES = {"result.json", "angles.csv", "joint_centres.csv", "model.urdf", "walk.npz", "report.html"}
+FILES = {"result.json", "angles.csv", "joint_centres.csv", "kinetics.csv", "model.urdf", "walk.npz", "report.html"}
 
 
 @pytest.fixture(scope="module")
