@@ -6,6 +6,8 @@ import casadi as ca
 import numpy as np
 
 from ..errors import ProblemError
+from .problem import MultiStageProblem
+from .symbols import require_known
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,3 +44,14 @@ class Measurement:
             raise ProblemError(f"times of measurement '{self.name}' must be fractions of the stage, from 0 to 1")
         if not np.all(self.sd > 0.0):
             raise ProblemError(f"standard deviations of measurement '{self.name}' must be positive")
+
+
+def check_measurement(problem: MultiStageProblem, measurement: Measurement) -> None:
+    """Raise `errors.ProblemError` where a measurement does not belong to the problem."""
+    if not 0 <= measurement.stage < len(problem.stages):
+        raise ProblemError(
+            f"measurement '{measurement.name}' is of stage {measurement.stage}; there are {len(problem.stages)}"
+        )
+    stage = problem.stages[measurement.stage]
+    known = (stage.t, stage.x, stage.u, problem.q, problem.p)
+    require_known(f"measurement '{measurement.name}'", measurement.function, known)

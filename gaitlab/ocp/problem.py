@@ -56,7 +56,8 @@ class MultiStageProblem:
         for stage in self.stages:
             stage.check(self.q, self.p)
         self._check_transitions()
-        self._check_points()
+        for constraint in self.points:
+            self.check_point_constraint(constraint)
 
     @property
     def criteria(self) -> tuple[str, ...]:
@@ -120,15 +121,15 @@ class MultiStageProblem:
             require_shape(what, transition.next_state, after.x.shape)
             require_known(what, transition.next_state, (before.x, self.q, self.p))
 
-    def _check_points(self) -> None:
-        for each in self.points:
-            symbols = [self.q, self.p]
-            for point in each.points:
-                self._require_stage(point.stage)
-                chosen = self.stages[point.stage]
-                require_shape(f"x of a point of '{each.constraint.name}'", point.x, chosen.x.shape)
-                symbols += [point.x, point.u]
-            require_known(f"point constraint '{each.constraint.name}'", each.constraint.expression, symbols)
+    def check_point_constraint(self, constraint: PointConstraint) -> None:
+        """Raise `errors.ProblemError` where a point constraint does not belong to the problem."""
+        name, symbols = constraint.constraint.name, [self.q, self.p]
+        for point in constraint.points:
+            self._require_stage(point.stage)
+            chosen = self.stages[point.stage]
+            require_shape(f"x of a point of '{name}'", point.x, chosen.x.shape)
+            symbols += [point.x, point.u]
+        require_known(f"point constraint '{name}'", constraint.constraint.expression, symbols)
 
     def _require_stage(self, stage: int) -> None:
         if not 0 <= stage < len(self.stages):

@@ -3,7 +3,7 @@
 import casadi as ca
 import numpy as np
 
-from ..ocp.measurement import Measurement
+from ..ocp.measurement import Measurement, check_measurement
 from ..ocp.problem import MultiStageProblem
 from .assembly import Piece
 from .pieces import PointReader
@@ -13,6 +13,7 @@ _NO_CONSTRAINTS = ca.SX(0, 1)
 
 def fit_pieces(problem: MultiStageProblem, reader: PointReader, measurement: Measurement) -> list[Piece]:
     """Half the squared residuals of each time, as pieces: times at left nodes, at the end, and inside intervals."""
+    check_measurement(problem, measurement)
     stage = problem.stages[measurement.stage]
     layout, model = reader.layout.stages[measurement.stage], reader.models[measurement.stage]
     located = [layout.grid.locate(time) for time in measurement.times.tolist()]

@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import ProblemError
 from ..nlp.problem import NLP
 from ..ocp.constraint import PointConstraint
-from ..ocp.measurement import Measurement
+from ..ocp.measurement import Measurement, check_measurement
 from ..ocp.problem import MultiStageProblem
 from ..ocp.trajectory import StageTrajectory, Trajectory
 from .layout import Layout, StageLayout
@@ -83,6 +83,7 @@ class Transcribed:
 
     def response(self, measurement: Measurement) -> ca.SX:
         """Model values of a measurement in (nlp.w, nlp.p), shape (n_t, n_h)."""
+        check_measurement(self.problem, measurement)
         stage = self.problem.stages[measurement.stage]
         symbols = [stage.t, stage.x, stage.u, self.problem.q, self.problem.p]
         function = ca.Function("h", symbols, [measurement.function])
@@ -103,6 +104,7 @@ class Transcribed:
 
     def expression(self, constraint: PointConstraint) -> ca.SX:
         """A function of states at several points in (nlp.w, nlp.p), for instance an upper-level constraint."""
+        self.problem.check_point_constraint(constraint)
         return point_expression(self._reader(), constraint, self.nlp.w, self.problem.q)
 
     def _reader(self) -> PointReader:

@@ -1,5 +1,7 @@
 """One-level parameter estimation: the same classes without criteria."""
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 import pytest
@@ -76,3 +78,13 @@ def test_impossible_measurements_are_refused(change, sentence):
     good = {"times": np.array([0.0, 1.0]), "values": np.zeros((2, 1)), "sd": np.ones((2, 1))}
     with pytest.raises(ProblemError, match=sentence):
         Measurement(name="x", function=ca.SX.sym("x"), **(good | change))
+
+
+def test_measurements_of_another_problem_are_refused():
+    problem = decay()
+    fit = measured(problem, exact())
+    foreign = replace(fit, function=ca.vertcat(ca.SX.sym("force"), fit.function[1]))
+    with pytest.raises(ProblemError, match="measurement 'x' uses force; symbols that it may use: t, x, rate"):
+        MultipleShooting(grids=2).transcribe(problem, fit=(foreign,))
+    with pytest.raises(ProblemError, match="measurement 'x' is of stage 4; there are 1"):
+        MultipleShooting(grids=2).transcribe(problem).residual((replace(fit, stage=4),))
