@@ -10,6 +10,7 @@ from ..mocap.cycles import cycles
 from .kinematics_figure import Marks, average_figure, consistency_figure
 from .markup import ABSENT, facts, fixed, label, missing, paragraph, plain, table, tag, unit_of
 from .result import Result, first_real, mapping, real, sequence
+from .score_sections import norms_of
 from .walk_file import Angles
 
 _CONVENTIONS = (
@@ -103,7 +104,7 @@ def kinematics_section(result: Result) -> str:
         if side not in result.kinematics.get(name, {})
     ]
     gap = missing(", ".join(absent), "result.json has no complete cycle of them") if absent else ""
-    average = average_figure(result.kinematics, marks_of(result))
+    average = average_figure(result.kinematics, marks_of(result), norms_of(result))
     body = paragraph(_cycles_used(result), "lead") + average + paragraph(_CONVENTIONS, "note") + gap
     return tag("section", title + body, "page")
 
@@ -134,7 +135,7 @@ def consistency_section(result: Result, trials: Sequence[tuple[Result, Angles | 
     if count < 2:
         reason = "no side has two complete cycles, so the average says it all"
         return tag("section", title + missing("every cycle", reason))
-    return tag("section", title + consistency_figure(curves, marks_of(result)), "page")
+    return tag("section", title + consistency_figure(curves, marks_of(result), norms_of(result)), "page")
 
 
 def every_cycle(result: Result, angles: Angles) -> dict[str, dict[str, list[np.ndarray]]]:
@@ -164,12 +165,33 @@ def spatiotemporal_section(result: Result) -> str:
     keys = [key for key in keys if key != "n_cycles"]
     if not keys:
         return tag("section", title + missing("spatiotemporal parameters", "no side has a complete cycle"))
+    reference = mapping(mapping(result.part("scores").get("reference")).get("spatiotemporal"))
     rows = [
-        (label(key), *(_with_sd(key, means[side], mapping(sides[side].get("sd"))) for side in SIDES)) for key in keys
+        (
+            label(key),
+            *(_with_sd(key, means[side], mapping(sides[side].get("sd"))) for side in SIDES),
+            *([_reference(key, mapping(reference.get(key)))] if reference else []),
+        )
+        for key in keys
     ]
-    rows.append(("Cycles", *(plain(sides[side].get("n_cycles")) for side in SIDES)))
-    norm = paragraph("No normative column: no reference data are loaded.", "note")
-    return tag("section", title + table(("", "left", "right"), rows, kind="sides") + norm)
+    counts = [plain(sides[side].get("n_cycles")) for side in SIDES]
+    rows.append(("Cycles", *counts, *([""] if reference else [])))
+    words = f"Reference: {norms_of(result).description}; distances for this person's leg length."
+    norm = paragraph(words if reference else "No normative column: no reference cohort applies.", "note")
+    header = ("", "left", "right", *(["reference"] if reference else []))
+    return tag("section", title + table(header, rows, kind="sides") + norm + _dimensionless(sides))
+
+
+def _dimensionless(sides: Mapping[str, Mapping[str, object]]) -> str:
+    values = {side: mapping(members.get("normalised")) for side, members in sides.items()}
+    keys = list(dict.fromkeys(key for found in values.values() for key in found if real(found[key]) is not None))
+    rows = [(label(key), *(fixed(real(values[side].get(key)), 3) for side in SIDES)) for key in keys]
+    caption = "Dimensionless with leg length l: v / sqrt(g l), f / sqrt(g / l), x / l, t / sqrt(l / g)"
+    return table(("", "left", "right"), rows, caption, "sides") if rows else ""
+
+
+def _reference(key: str, value: Mapping[str, object]) -> str:
+    return _with_sd(key, {key: value.get("mean")}, {key: value.get("sd")}) if value else ABSENT
 
 
 def _with_sd(key: str, means: Mapping[str, object], deviations: Mapping[str, object]) -> str:

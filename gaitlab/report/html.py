@@ -16,6 +16,7 @@ from .clinical_sections import (
 from .markup import paragraph, tag
 from .quality_sections import provenance_section, quality_section, warnings_box
 from .result import Result, read_result, trial_directories
+from .score_sections import scores_section, strides_section
 from .walk_file import Angles, Walk, read_angles, read_walk
 from .weights_sections import walk_section, weights_section
 
@@ -107,7 +108,9 @@ def _overall(result: Result, trials: Sequence[tuple[Path, Result]]) -> str:
         consistency_section(
             result, [(trial, angles) for trial, angles, _ in read], " ".join(why for *_, why in read).strip()
         ),
+        strides_section(result),
         spatiotemporal_section(result),
+        scores_section(result),
         weights_section(result),
     ]
     return "".join(parts)
@@ -119,7 +122,9 @@ def _single(result: Result, directory: Path) -> str:
     parts = [
         kinematics_section(result),
         consistency_section(result, [(result, angles)], why),
+        strides_section(result),
         spatiotemporal_section(result),
+        scores_section(result),
         weights_section(result),
         walk_section(result, *_walk(directory)),
         quality_section(result),

@@ -1,11 +1,11 @@
 """The kinematics page: nine curves over the gait cycle, columns sagittal, frontal, transverse, rows proximal to distal.
 
-Left is red, right is blue. The vertical scale of each curve is always the same, so that pages can be compared by eye; a
-curve that leaves its scale is cut off and the panel says so.
+Left is red, right is blue, the reference cohort grey. The vertical scale of each curve is always the same, so that
+pages can be compared by eye; a curve that leaves its scale is cut off and the panel says so.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -72,21 +72,57 @@ class Marks:
     opposite_foot_strike: float | None = None
 
 
-def average_figure(kinematics: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks]) -> str:
+@dataclass(frozen=True, kw_only=True)
+class Norms:
+    """Reference cohort."""
+
+    description: str = ""
+    """Source, n, age and speed."""
+    curves: Mapping[str, Curve] = field(default_factory=dict[str, Curve])
+
+
+NO_NORMS = Norms()
+
+
+def average_figure(
+    kinematics: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks], norms: Norms = NO_NORMS
+) -> str:
     """Draw the mean of each side, with a band of one standard deviation where there are two cycles or more."""
-    drawn = {p.name: "".join(_average(p.axes, s, c) for s, c in _sides(kinematics.get(p.name, {}))) for p in PANELS}
-    legend = ("mean of the cycles, band: ± 1 standard deviation",)
+    drawn = {
+        p.name: norm_band(p, norms) + "".join(_average(p.axes, s, c) for s, c in _sides(kinematics.get(p.name, {})))
+        for p in PANELS
+    }
+    legend = ("mean of the cycles, coloured band: ± 1 standard deviation", *_norm_legend(norms))
     return _page(drawn, {p.name: _extent(kinematics.get(p.name, {})) for p in PANELS}, marks, legend)
 
 
-def consistency_figure(cycles: Mapping[str, Mapping[str, Sequence[np.ndarray]]], marks: Mapping[str, Marks]) -> str:
+def norm_band(panel: Panel, norms: Norms) -> str:
+    """Grey band of the reference cohort, mean +- 1 standard deviation; empty where there is none."""
+    band = norms.curves.get(panel.name)
+    if band is None or band.sd is None:
+        return ""
+    middle = curve(panel.axes, PERCENT, band.mean, stroke="#8a949e", stroke_width=1.0)
+    return area(panel.axes, PERCENT, band.mean - band.sd, band.mean + band.sd, fill="#d3d8dd") + middle
+
+
+def _norm_legend(norms: Norms) -> tuple[str, ...]:
+    if not norms.curves:
+        return ("no normative band: no reference cohort applies",)
+    first, _, speed = norms.description.partition(", speed")
+    return (f"grey: mean ± 1 SD of {first},", f"speed{speed}") if speed else (f"grey: mean ± 1 SD of {first}",)
+
+
+def consistency_figure(
+    cycles: Mapping[str, Mapping[str, Sequence[np.ndarray]]], marks: Mapping[str, Marks], norms: Norms = NO_NORMS
+) -> str:
     """Draw every cycle of each side, curve name to side to curves [deg] of shape (101,)."""
     drawn, extents = dict[str, str](), dict[str, tuple[float, float] | None]()
     for panel in PANELS:
         sides = cycles.get(panel.name, {})
-        drawn[panel.name] = "".join(_line(panel.axes, s, y, 1.2) for s in SIDES for y in sides.get(s, ()))
+        lines = "".join(_line(panel.axes, s, y, 1.2) for s in SIDES for y in sides.get(s, ()))
+        drawn[panel.name] = norm_band(panel, norms) + lines
         extents[panel.name] = _range([y for s in SIDES for y in sides.get(s, ())])
-    return _page(drawn, extents, marks, ("each line is one cycle",))
+    return _page(drawn, extents, marks, ("each line is one cycle", *_norm_legend(norms)))
 
 
 def _sides(curves: Mapping[str, Curve]) -> list[tuple[str, Curve]]:
@@ -180,7 +216,7 @@ def _legend(marks: Mapping[str, Marks], extra: Sequence[str]) -> str:
         "each side on its own cycle, foot strike to foot strike of that side",
         "dashed vertical line: foot off of that side" if known else "foot off: unknown",
         "short tick at the top: opposite foot strike; at the bottom: opposite foot off" if known else "",
-        "fixed scales; no normative band, because no reference data are loaded",
+        "fixed scales",
     )
     shown = [line for line in lines if line]
     return "".join(parts) + "".join(text(w, x, y + 20.0 + 17.0 * i, **{"class": "note"}) for i, w in enumerate(shown))

@@ -193,7 +193,8 @@ def _samples(value: object) -> np.ndarray | None:
     return np.array([np.nan if number is None else number for number in numbers])
 
 
-def _curve(value: object) -> Curve | None:
+def curve_of(value: object) -> Curve | None:
+    """A curve of the document; None when it has not 101 samples or none is known."""
     members = mapping(value) or {"mean": value}
     mean, sd = _samples(members.get("mean")), _samples(members.get("sd"))
     if mean is None or not np.any(np.isfinite(mean)):
@@ -206,7 +207,7 @@ def _curve(value: object) -> Curve | None:
 def _kinematics(value: object) -> dict[str, dict[str, Curve]]:
     curves = dict[str, dict[str, Curve]]()
     for name, sides in mapping(value).items():
-        read = {side: _curve(mapping(sides).get(side)) for side in SIDES}
+        read = {side: curve_of(mapping(sides).get(side)) for side in SIDES}
         curves[name] = {side: curve for side, curve in read.items() if curve is not None}
     return curves
 
