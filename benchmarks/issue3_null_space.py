@@ -4,13 +4,18 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
-from registry import Row, measurement
+from registry import CHILDREN, Row, measurement
 from scipy.optimize import minimize
+from vicon import recording
 from walking_body import walking_coordinates
 
 from gaitlab.benchmarks.black_box_examples import black_box_examples
+from gaitlab.inverse.conventional import joint_kinematics
+from gaitlab.inverse.static import calibrate_subject
 from gaitlab.multibody.presets import thesis_able_bodied_child, thesis_cp_child
+from gaitlab.multibody.scaling import SubjectSettings
 from gaitlab.nlp.null_space.method import NullSpaceProjection
+from gaitlab.pipelines.model import person_model, whole_model_motion
 from gaitlab.walking.posture import PostureProblem, least_load_posture
 
 INDEPENDENT = [0, 1, 2, 4, 5, 6, 7, 8, 10, 11, 12, 13]
@@ -41,6 +46,24 @@ def least_load_postures_beside_slsqp() -> Iterator[Row]:
             yield from _slsqp(problem, rows, name, child.name)
         start = problem.cost(problem.measured)
         yield Row(quantity="cost, measured posture", value=start, limit="", unit="", subject=child.name)
+
+
+@measurement(issue=3, line=2)
+def least_load_postures_of_children() -> Iterator[Row]:
+    """Standing children: feet where the static trial has them."""
+    for child in CHILDREN[:3]:
+        static, walk = (recording(f"children/{child}/{kind}_*.c3d") for kind in ("static", "straight"))
+        calibration = calibrate_subject(static, walk, {})
+        kinematics = joint_kinematics(static, calibration)
+        subject = person_model(static, kinematics, calibration.parameters, SubjectSettings())
+        q = whole_model_motion(subject, static, kinematics).q
+        problem = PostureProblem(subject=subject, measured=q[np.all(np.isfinite(q), axis=1)][0])
+        ours = least_load_posture(problem)
+        yield from _rows("null space", ours.cost, ours.violation, ours.seconds, ours.iterations, child)
+        yield Row(quantity="solved, null space", value=float(ours.solved), limit=">= 1", unit="", subject=child)
+        yield from _slsqp(problem, INDEPENDENT, "SLSQP, independent rows", child)
+        start = problem.cost(problem.measured)
+        yield Row(quantity="cost, measured posture", value=start, limit="", unit="", subject=child)
 
 
 def _slsqp(problem: PostureProblem, rows: list[int] | slice, name: str, subject: str) -> Iterator[Row]:
