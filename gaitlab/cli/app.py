@@ -13,9 +13,11 @@ from .. import __version__
 from ..errors import Cancelled, GaitlabError, NotConverged
 from .analyse import analyse
 from .benchmark import benchmark
+from .compare import compare_results
 from .demo import demo
 from .demo_data import demo_data
 from .inspect import inspect
+from .norms import norms
 from .schema import schema
 from .view import view
 
@@ -33,7 +35,9 @@ app = typer.Typer(
 for command in (analyse, inspect, view, schema, demo):
     app.command()(command)
 app.command(name="demo-data")(demo_data)
+app.command(name="compare")(compare_results)
 app.add_typer(benchmark)
+app.add_typer(norms)
 
 
 @app.callback(invoke_without_command=True)

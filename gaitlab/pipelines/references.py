@@ -69,7 +69,7 @@ def load_references(options: ReferenceOptions) -> References:
         problems.append("no norms: none were asked for")
     else:
         try:
-            cohort = read_cohort(_norm_path(options.norms))
+            cohort = read_cohort(norm_path(options.norms))
         except (InvalidReference, NotFound) as error:
             problems.append(f"no norms: {error}")
     problems += _unknown_age(cohort, options.age)
@@ -92,6 +92,7 @@ def _unknown_age(cohort: ReferenceCohort | None, age: float | None) -> list[str]
     return [f"age of the person not given (--age): whether norms of {low:g} to {high:g} years apply is not checked"]
 
 
-def _norm_path(norms: str) -> Path:
+def norm_path(norms: str) -> Path:
+    """Path of norms: a file as it is, otherwise bundled norms of that name; raises NotFound."""
     path = Path(norms)
     return path if path.suffix or path.exists() else bundled_norms(norms)
