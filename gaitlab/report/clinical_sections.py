@@ -7,7 +7,8 @@ import numpy as np
 from ..clinical.cycle_average import time_normalise
 from ..clinical.document import CURVES, SIDES
 from ..mocap.cycles import cycles
-from .kinematics_figure import Marks, average_figure, consistency_figure
+from .cycle_panels import Marks
+from .kinematics_figure import average_figure, consistency_figure
 from .markup import ABSENT, facts, fixed, label, missing, paragraph, plain, table, tag, unit_of
 from .result import Result, first_real, mapping, real, sequence
 from .score_sections import norms_of

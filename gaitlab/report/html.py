@@ -13,6 +13,7 @@ from .clinical_sections import (
     spatiotemporal_section,
     subject_section,
 )
+from .kinetics_sections import emg_section, kinetics_section
 from .markup import paragraph, tag
 from .quality_sections import provenance_section, quality_section, warnings_box
 from .result import Result, read_result, trial_directories
@@ -108,6 +109,8 @@ def _overall(result: Result, trials: Sequence[tuple[Path, Result]]) -> str:
         consistency_section(
             result, [(trial, angles) for trial, angles, _ in read], " ".join(why for *_, why in read).strip()
         ),
+        kinetics_section(result),
+        emg_section(result),
         strides_section(result),
         spatiotemporal_section(result),
         scores_section(result),
@@ -122,6 +125,8 @@ def _single(result: Result, directory: Path) -> str:
     parts = [
         kinematics_section(result),
         consistency_section(result, [(result, angles)], why),
+        kinetics_section(result),
+        emg_section(result),
         strides_section(result),
         spatiotemporal_section(result),
         scores_section(result),

@@ -9,44 +9,52 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..clinical.cycle_average import N_SAMPLES
 from ..clinical.document import SIDES
-from .colours import SIDE
+from .cycle_panels import (
+    PERCENT,
+    CyclePanel,
+    Marks,
+    averages,
+    cycle_line,
+    cycle_panel,
+    legend,
+    legend_lines,
+    mean_range,
+    value_range,
+)
 from .result import Curve
-from .svg import Axes, area, clipped, curve, figure, frame, number, straight, text, ticks
+from .svg import Axes, area, curve, figure, text
 
-PERCENT = np.linspace(0.0, 100.0, N_SAMPLES)
 _WIDTH, _COLUMN, _ROW = 1000.0, 325.0, 190.0
 _PANEL_WIDTH, _PANEL_HEIGHT = 245.0, 128.0
 _HEADINGS = ("Sagittal", "Frontal", "Transverse")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Panel:
-    """Place, scale and directions of one curve."""
+class Panel(CyclePanel):
+    """Place, scale and directions of one curve [deg]."""
 
-    name: str
-    title: str
     row: int
     column: int
-    scale: tuple[float, float]
-    """Lowest and highest value shown [deg]."""
     positive: str
     negative: str
 
-    @property
-    def axes(self) -> Axes:
-        """The rectangle of the panel."""
-        left, top = 66.0 + self.column * _COLUMN, 46.0 + self.row * _ROW
-        place = {"left": left, "top": top, "width": _PANEL_WIDTH, "height": _PANEL_HEIGHT}
-        return Axes(**place, x_range=(0.0, 100.0), y_range=self.scale)
-
 
 def _panel(name: str, place: tuple[int, int], scale: tuple[float, float], directions: tuple[str, str]) -> Panel:
-    title = name.replace("_", " ").capitalize()
-    negative, positive = directions
     row, column = place
-    return Panel(name=name, title=title, row=row, column=column, scale=scale, positive=positive, negative=negative)
+    negative, positive = directions
+    corner = {"left": 66.0 + column * _COLUMN, "top": 46.0 + row * _ROW}
+    return Panel(
+        name=name,
+        title=name.replace("_", " ").capitalize(),
+        row=row,
+        column=column,
+        axes=Axes(**corner, width=_PANEL_WIDTH, height=_PANEL_HEIGHT, x_range=(0.0, 100.0), y_range=scale),
+        positive=positive,
+        negative=negative,
+        direction=f"{negative} / {positive} [deg]",
+        x_label=row == 3 or (column > 0 and row == 1),
+    )
 
 
 # Signs of design/clinical.md; scales wide enough for most pathological gait, zero always inside.
@@ -61,15 +69,6 @@ PANELS = (
     _panel("ankle_dorsiflexion", (3, 0), (-50.0, 40.0), ("Plant", "Dorsi")),
     _panel("foot_progression", (3, 2), (-50.0, 40.0), ("Ext", "Int")),
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Marks:
-    """Moments of one side's cycle [%]; None where unknown."""
-
-    foot_off: float | None = None
-    opposite_foot_off: float | None = None
-    opposite_foot_strike: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,12 +87,9 @@ def average_figure(
     kinematics: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks], norms: Norms = NO_NORMS
 ) -> str:
     """Draw the mean of each side, with a band of one standard deviation where there are two cycles or more."""
-    drawn = {
-        p.name: norm_band(p, norms) + "".join(_average(p.axes, s, c) for s, c in _sides(kinematics.get(p.name, {})))
-        for p in PANELS
-    }
-    legend = ("mean of the cycles, coloured band: ± 1 standard deviation", *_norm_legend(norms))
-    return _page(drawn, {p.name: _extent(kinematics.get(p.name, {})) for p in PANELS}, marks, legend)
+    drawn = {p.name: norm_band(p, norms) + averages(p.axes, kinematics.get(p.name, {})) for p in PANELS}
+    words = ("mean of the cycles, coloured band: ± 1 standard deviation", *_norm_legend(norms))
+    return _page(drawn, {p.name: mean_range(kinematics.get(p.name, {})) for p in PANELS}, marks, words)
 
 
 def norm_band(panel: Panel, norms: Norms) -> str:
@@ -119,104 +115,27 @@ def consistency_figure(
     drawn, extents = dict[str, str](), dict[str, tuple[float, float] | None]()
     for panel in PANELS:
         sides = cycles.get(panel.name, {})
-        lines = "".join(_line(panel.axes, s, y, 1.2) for s in SIDES for y in sides.get(s, ()))
+        lines = "".join(cycle_line(panel.axes, s, y, 1.2) for s in SIDES for y in sides.get(s, ()))
         drawn[panel.name] = norm_band(panel, norms) + lines
-        extents[panel.name] = _range([y for s in SIDES for y in sides.get(s, ())])
+        extents[panel.name] = value_range([y for s in SIDES for y in sides.get(s, ())])
     return _page(drawn, extents, marks, ("each line is one cycle", *_norm_legend(norms)))
-
-
-def _sides(curves: Mapping[str, Curve]) -> list[tuple[str, Curve]]:
-    return [(side, curves[side]) for side in SIDES if side in curves]
-
-
-def _extent(curves: Mapping[str, Curve]) -> tuple[float, float] | None:
-    return _range([c.mean for _, c in _sides(curves)])
-
-
-def _range(values: Sequence[np.ndarray]) -> tuple[float, float] | None:
-    finite = np.concatenate([v[np.isfinite(v)] for v in values]) if values else np.zeros(0)
-    return (float(finite.min()), float(finite.max())) if finite.size else None
-
-
-def _average(axes: Axes, side: str, values: Curve) -> str:
-    band = ""
-    if values.sd is not None:
-        known = np.isfinite(values.mean) & np.isfinite(values.sd)
-        lower, upper = (values.mean - values.sd)[known], (values.mean + values.sd)[known]
-        band = area(axes, PERCENT[known], lower, upper, fill=SIDE[side], opacity="0.15")
-    return band + _line(axes, side, values.mean, 2.2)
-
-
-def _line(axes: Axes, side: str, values: np.ndarray, width: float) -> str:
-    return curve(axes, PERCENT, values, stroke=SIDE[side], stroke_width=width, stroke_linejoin="round")
 
 
 def _page(
     drawn: Mapping[str, str],
     extents: Mapping[str, tuple[float, float] | None],
     marks: Mapping[str, Marks],
-    legend: Sequence[str],
+    words: Sequence[str],
 ) -> str:
     places = [66.0 + _PANEL_WIDTH / 2.0 + column * _COLUMN for column in range(len(_HEADINGS))]
     headings = [
         text(h, x, 16.0, **{"class": "heading", "text_anchor": "middle"})
         for h, x in zip(_HEADINGS, places, strict=True)
     ]
-    panels = [_draw_panel(panel, drawn[panel.name], extents[panel.name], marks) for panel in PANELS]
-    content = "".join(headings) + "".join(panels) + _legend(marks, legend)
+    panels = [cycle_panel(panel, drawn[panel.name], extents[panel.name], marks) for panel in PANELS]
+    content = "".join(headings) + "".join(panels) + _legend(marks, words)
     return figure(_WIDTH, 46.0 + 4 * _ROW - 26.0, content, "Joint angles over the gait cycle")
 
 
-def _draw_panel(panel: Panel, content: str, extent: tuple[float, float] | None, marks: Mapping[str, Marks]) -> str:
-    axes = panel.axes
-    low, high = panel.scale
-    middle = axes.top + axes.height / 2.0
-    x = axes.left - 42.0
-    turned = {"class": "direction", "text_anchor": "middle"}
-    direction = f"{panel.negative} / {panel.positive} [deg]"
-    parts = [
-        frame(axes, (0.0, 20.0, 40.0, 60.0, 80.0, 100.0), ticks(low, high, 5)),
-        text(panel.title, axes.left, axes.top - 8.0, **{"class": "title"}),
-        text(direction, x, middle, transform=f"rotate(-90 {number(x)} {number(middle)})", **turned),
-        "".join(_draw_marks(axes, side, marks[side]) for side in SIDES if side in marks),
-        clipped(axes, content) if content else text("no data", axes.left + 10, axes.top + 18, **{"class": "note"}),
-    ]
-    if panel.row == 3 or panel.column > 0 and panel.row == 1:
-        parts.append(text("% of cycle", axes.right, axes.bottom + 29.0, **{"class": "note", "text_anchor": "end"}))
-    if extent is not None and (extent[0] < low or extent[1] > high):
-        words = f"leaves scale: {extent[0]:.0f} to {extent[1]:.0f}"
-        parts.append(text(words, axes.left + 6.0, axes.top + 15.0, **{"class": "alert"}))
-    return f'<g data-curve="{panel.name}">{"".join(parts)}</g>'
-
-
-def _draw_marks(axes: Axes, side: str, marks: Marks) -> str:
-    parts = list[str]()
-    if marks.foot_off is not None and 0.0 <= marks.foot_off <= 100.0:
-        x = axes.x(marks.foot_off)
-        line = {"stroke": SIDE[side], "stroke_width": 1.2, "stroke_dasharray": "5 3"}
-        parts.append(straight((x, axes.top), (x, axes.bottom), **line))
-    for percent, at_top in ((marks.opposite_foot_off, False), (marks.opposite_foot_strike, True)):
-        if percent is not None and 0.0 <= percent <= 100.0:
-            x, y = axes.x(percent), axes.top if at_top else axes.bottom
-            inwards = y + (8.0 if at_top else -8.0)
-            parts.append(straight((x, y), (x, inwards), stroke=SIDE[side], stroke_width=2.0))
-    return "".join(parts)
-
-
 def _legend(marks: Mapping[str, Marks], extra: Sequence[str]) -> str:
-    x, y = 66.0 + _COLUMN + 2.0, 46.0 + 2 * _ROW + 18.0
-    parts = list[str]()
-    for index, side in enumerate(SIDES):
-        line = {"stroke": SIDE[side], "stroke_width": 3.0}
-        parts.append(straight((x + 90.0 * index, y - 4.0), (x + 28.0 + 90.0 * index, y - 4.0), **line))
-        parts.append(text(side.capitalize(), x + 34.0 + 90.0 * index, y, **{"class": "title"}))
-    known = any(m != Marks() for m in marks.values())
-    lines = (
-        *extra,
-        "each side on its own cycle, foot strike to foot strike of that side",
-        "dashed vertical line: foot off of that side" if known else "foot off: unknown",
-        "short tick at the top: opposite foot strike; at the bottom: opposite foot off" if known else "",
-        "fixed scales",
-    )
-    shown = [line for line in lines if line]
-    return "".join(parts) + "".join(text(w, x, y + 20.0 + 17.0 * i, **{"class": "note"}) for i, w in enumerate(shown))
+    return legend(66.0 + _COLUMN + 2.0, 46.0 + 2 * _ROW + 18.0, (*extra, *legend_lines(marks), "fixed scales"))

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
 
@@ -65,12 +65,12 @@ class Weights:
 
 @dataclass(frozen=True, kw_only=True)
 class Curve:
-    """One angle over the gait cycle, 0 to 100 % in 101 samples, NaN where missing."""
+    """One quantity over the gait cycle, 0 to 100 % in 101 samples, NaN where missing."""
 
     mean: np.ndarray
-    """Mean over the cycles [deg], shape (101,)."""
+    """Mean over the cycles, shape (101,); angles in deg."""
     sd: np.ndarray | None
-    """Standard deviation [deg], shape (101,); None with fewer than two cycles."""
+    """Standard deviation, shape (101,); None with fewer than two cycles."""
     n_cycles: int | None
 
 
@@ -85,6 +85,10 @@ class Result:
     kinematics: Mapping[str, Mapping[str, Curve]]
     """Curve name to side to its average cycle."""
     weights: Weights | None
+    kinetics: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict[str, Mapping[str, Curve]])
+    """Moments, powers and ground reactions by name, to side, in their units."""
+    emg: Mapping[str, Mapping[str, Curve]] = field(default_factory=dict[str, Mapping[str, Curve]])
+    """Envelopes by label, to side, in the file's unit."""
 
     def part(self, key: str) -> Mapping[str, object]:
         """Object under `key`; empty if absent."""
@@ -204,7 +208,7 @@ def curve_of(value: object) -> Curve | None:
     return Curve(mean=mean, sd=spread, n_cycles=None if n_cycles is None else int(n_cycles))
 
 
-def _kinematics(value: object) -> dict[str, dict[str, Curve]]:
+def _curves(value: object) -> dict[str, dict[str, Curve]]:
     curves = dict[str, dict[str, Curve]]()
     for name, sides in mapping(value).items():
         read = {side: curve_of(mapping(sides).get(side)) for side in SIDES}
@@ -250,7 +254,9 @@ def read_result(directory: Path) -> Result:
         name=_name(sequence(members.get("inputs")), directory),
         document=members,
         events=_events(sequence(members.get("events"))),
-        kinematics=_kinematics(members.get("kinematics")),
+        kinematics=_curves(members.get("kinematics")),
+        kinetics=_curves(mapping(members.get("kinetics")).get("curves")),
+        emg=_curves(mapping(members.get("emg")).get("envelopes")),
         weights=_weights(members.get("weights")),
     )
 
