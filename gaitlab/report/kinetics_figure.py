@@ -1,7 +1,7 @@
 """The kinetics page: moments, powers and ground reactions over the gait cycle, columns hip, knee, ankle.
 
 Scales are always the same, so that pages can be compared by eye; a curve that leaves its scale is cut off and told.
-EMG envelopes have no common scale: each panel ends at the largest mean of its channel.
+EMG envelopes have no common unit: each is drawn in percent of the largest mean of its channel.
 """
 
 from collections.abc import Mapping
@@ -51,20 +51,26 @@ def kinetics_figure(kinetics: Mapping[str, Mapping[str, Curve]], marks: Mapping[
 
 
 def emg_figure(envelopes: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks]) -> str:
-    """Draw the mean envelope of each channel, three in a row."""
+    """Draw the mean envelope of each channel in percent of its own maximum, three in a row."""
     panels = list[str]()
     for index, (label, curves) in enumerate(envelopes.items()):
         extent = mean_range(curves)
-        panel = _emg_panel(label, index, extent[1] if extent is not None and extent[1] > 0.0 else 1.0)
+        highest = extent[1] if extent is not None and extent[1] > 0.0 else 1.0
+        panel = _emg_panel(label, index, highest)
         own = {side: mark for side, mark in marks.items() if side in curves}
-        panels.append(cycle_panel(panel, averages(panel.axes, curves), None, own))
+        scaled = {side: _scaled(curve, 100.0 / highest) for side, curve in curves.items()}
+        panels.append(cycle_panel(panel, averages(panel.axes, scaled), None, own))
     height = _TOP + _EMG_ROW * ((len(envelopes) + 2) // 3)
     return figure(_WIDTH, height, "".join(panels), "EMG envelopes over the gait cycle")
+
+
+def _scaled(curve: Curve, factor: float) -> Curve:
+    return Curve(mean=factor * curve.mean, sd=None if curve.sd is None else factor * curve.sd, n_cycles=curve.n_cycles)
 
 
 def _emg_panel(label: str, index: int, highest: float) -> CyclePanel:
     row, column = divmod(index, 3)
     left, top = 66.0 + column * _COLUMN, _TOP + row * _EMG_ROW
-    scale = (0.0, 1.1 * highest)
-    axes = Axes(left=left, top=top, width=_PANEL_WIDTH, height=_EMG_HEIGHT, x_range=(0.0, 100.0), y_range=scale)
-    return CyclePanel(name=label, title=label, axes=axes, direction="file's unit")
+    axes = Axes(left=left, top=top, width=_PANEL_WIDTH, height=_EMG_HEIGHT, x_range=(0.0, 100.0), y_range=(0.0, 125.0))
+    title = f"{label} (100 % = {highest:.2g} in the file's unit)"
+    return CyclePanel(name=label, title=title, axes=axes, direction="% of max")

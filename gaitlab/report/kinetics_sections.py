@@ -62,7 +62,7 @@ def emg_section(result: Result) -> str:
     if not result.emg:
         return ""
     words = (
-        f"Linear envelopes ({part.get('filter') or 'filter not stated'}); each panel is scaled to its own channel, so "
+        f"Linear envelopes ({part.get('filter') or 'filter not stated'}); each in percent of its own maximum, so "
         "heights cannot be compared between muscles or sessions. A channel whose label names no side is drawn over the "
         "cycles of both."
     )
