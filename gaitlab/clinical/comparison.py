@@ -14,7 +14,6 @@ from .gait_profile import GPS_MINIMAL_DIFFERENCE
 from .spatiotemporal import Spatiotemporal
 
 Cell = str | float | int | bool | None
-SCORES = ("gps", "gdi")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,10 +159,12 @@ def _quantity_table(comparison: Comparison) -> Table:
     columns = ("result", "group", "quantity", "side", "value", "sd", "difference", "minimal_difference")
     base_member = next(member for member in comparison.members if member.label == comparison.baseline)
     base = {(q.name, q.side): q.value for q in quantities(base_member.document)}
+    judged_by = _judged_by(base_member.document)
     rows: list[tuple[Cell, ...]] = []
     for member in comparison.members:
         for q in quantities(member.document):
-            start = base.get((q.name, q.side))
+            same = not _is_score(q.name) or _judged_by(member.document) == judged_by
+            start = base.get((q.name, q.side)) if same else None
             known = comparison.minimal.get(q.name)
             difference = None if start is None else q.value - start
             least = None if known is None else known.value
@@ -172,6 +173,18 @@ def _quantity_table(comparison: Comparison) -> Table:
             head = (member.label, member.group, q.name, q.side, q.value, q.sd)
             rows.append((*head, difference, least, reached, source))
     return Table(columns=(*columns, "reaches_minimal_difference", "source"), rows=tuple(rows))
+
+
+def _is_score(name: str) -> bool:
+    return name.startswith(("gvs_", "gps", "gdi"))
+
+
+def _judged_by(document: Document) -> tuple[str, str]:
+    """What scores refer to: scores of different references have no difference."""
+    scores = document.scores
+    if scores is None:
+        return "", ""
+    return "" if scores.reference is None else scores.reference.description, scores.gdi_reference
 
 
 def _weight_table(comparison: Comparison) -> Table:
@@ -212,6 +225,10 @@ def _missing_table(comparison: Comparison) -> Table:
         document = member.document
         sentences = [] if document.scores is None else document.scores.missing
         rows += [(member.label, member.group, "scores", sentence) for sentence in sentences]
+        base = next(m.document for m in comparison.members if m.label == comparison.baseline)
+        if _judged_by(document) != _judged_by(base):
+            why = f"other references than {comparison.baseline} has"
+            rows.append((member.label, member.group, "differences of scores", why))
         if document.scores is None:
             rows.append((member.label, member.group, "scores", "the result holds none"))
         if document.weights is None:

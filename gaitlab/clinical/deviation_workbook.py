@@ -2,7 +2,8 @@
 
 Understood are, on any sheet: 15 columns of 459 numbers one below the other, or 15 rows of 459 (the features); and
 either the controls' gait vectors in the same form (more than 15 of them), or a row or column of 15 numbers under a
-heading with the words `control` and `mean`, and two numbers beside or below headings with `ln` and `mean`, `ln` and `sd`.
+heading with the words `control` and `mean`, and two numbers beside or below headings with `ln` and
+`mean`, `ln` and `sd`.
 """
 
 from collections.abc import Sequence

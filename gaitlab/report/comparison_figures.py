@@ -74,11 +74,11 @@ def curves_figure(comparison: Comparison) -> str:
     bands = {name: group_bands(members) for name, members in groups.items()}
     norms = _norms(comparison.members)
     content = "".join(_curve_panel(panel, bands, norms) for panel in PANELS)
-    lines = [f"line style: {', '.join(groups)}; band: ± 1 SD between results (of one result: between its cycles)"]
+    lines = ["band: ± 1 SD between the results of a group (of one result: between its cycles); fixed scales"]
     lines.append(f"grey: mean ± 1 SD of {norms.description}" if norms.curves else "grey: no common reference cohort")
     legend = _legend({name: len(members) for name, members in groups.items()}, 820.0)
-    words = "".join(text(w, 66.0, 872.0 + 17.0 * k, **{"class": "note"}) for k, w in enumerate(lines[1:]))
-    return _standalone(900.0, content + legend + words, "Joint angles over the gait cycle")
+    words = "".join(text(w, 66.0, 876.0 + 17.0 * k, **{"class": "note"}) for k, w in enumerate(lines))
+    return _standalone(905.0, content + legend + words, "Joint angles over the gait cycle")
 
 
 def _norms(members: Sequence[Member]) -> Norms:

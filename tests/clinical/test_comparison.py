@@ -1,0 +1,120 @@
+import msgspec
+import numpy as np
+import pytest
+from synthetic_output import curve, document
+
+from gaitlab.clinical.cohort_building import CohortSettings, build_cohort
+from gaitlab.clinical.comparison import Member, compare, group_bands, tables
+from gaitlab.clinical.document import CURVES, Document
+from gaitlab.clinical.gait_profile import gait_profile
+from gaitlab.errors import InvalidReference, NotFound, ProblemError
+
+
+def shifted(degrees, gps=None, speed=1.0, description="norms"):
+    """A result whose curves all lie higher by that much."""
+    written = document()
+    for name in CURVES:
+        for side in ("left", "right"):
+            found = curve(name, side)
+            written["kinematics"][name][side] = found | {"mean": [x + degrees for x in found["mean"]]}
+    for side in ("left", "right"):
+        written["spatiotemporal"][side]["mean"]["speed_m_per_s"] = speed
+        written["spatiotemporal"][side]["normalised"]["speed"] = 0.4 * speed
+    if gps is not None:
+        reference = {"source": "s", "licence": "l", "n": 3, "age_years": None, "speed_bin": "free", "curves": {}}
+        scores = {"gvs": {"hip_flexion": gps}, "gps": gps, "gps_sd": 0.2}
+        written["scores"] = {"reference": reference | {"description": description}, "left": scores, "gps_overall": gps}
+    return msgspec.convert(written, Document)
+
+
+def member(label, group="", **values):
+    return Member(label=label, group=group or label, document=shifted(**values))
+
+
+def row(comparison, label, quantity, side):
+    table = tables(comparison)["quantities"]
+    found = next(r for r in table.rows if (r[0], r[2], r[3]) == (label, quantity, side))
+    return dict(zip(table.columns, found, strict=True))
+
+
+def test_differences_stand_beside_the_minimal_difference():
+    comparison = compare([member("before", degrees=0.0, gps=9.0), member("after", degrees=0.0, gps=7.0, speed=1.3)])
+    gps = row(comparison, "after", "gps_overall", "")
+    assert (gps["difference"], gps["minimal_difference"], gps["reaches_minimal_difference"]) == (-2.0, 1.6, True)
+    speed = row(comparison, "after", "speed_m_per_s", "left")
+    assert speed["difference"] == pytest.approx(0.3) and speed["minimal_difference"] is None
+
+
+def test_any_result_can_be_the_baseline():
+    members = [member("a", degrees=0.0, speed=1.0), member("b", degrees=0.0, speed=1.5)]
+    assert row(compare(members, "b"), "a", "speed_m_per_s", "left")["difference"] == -0.5
+
+
+def test_scores_of_different_references_have_no_difference():
+    comparison = compare([member("a", degrees=0.0, gps=9.0), member("b", degrees=0.0, gps=7.0, description="other")])
+    assert row(comparison, "b", "gps_overall", "")["difference"] is None
+    assert ("b", "b", "differences of scores", "other references than a has") in tables(comparison)["missing"].rows
+
+
+def test_bands_of_a_group_are_point_by_point():
+    band = group_bands([member(str(shift), degrees=shift) for shift in (-1.0, 0.0, 4.0)])["knee_flexion", "left"]
+    assert band.n == 3
+    assert band.mean == pytest.approx(np.array(curve("knee_flexion", "left")["mean"]) + 1.0)
+    assert band.sd == pytest.approx(np.full(101, np.sqrt(7.0)))
+
+
+def test_a_single_result_brings_the_spread_of_its_cycles():
+    band = group_bands([member("alone", degrees=0.0)])["knee_flexion", "left"]
+    assert band.n == 1 and band.sd == pytest.approx(np.full(101, 1.5))
+
+
+def test_weights_keep_their_uncertainty():
+    rows = tables(compare([member("a", degrees=0.0)]))["weights"].rows
+    assert rows[0][:5] == ("a", "a", "stability", 0.55, 0.04)
+    assert rows[3][4] is None and rows[3][6] is False
+
+
+def test_what_cannot_be_compared_is_refused():
+    with pytest.raises(ProblemError, match="nothing to compare"):
+        compare([])
+    with pytest.raises(ProblemError, match="two results are called a"):
+        compare([member("a", degrees=0.0), member("a", degrees=1.0)])
+    with pytest.raises(NotFound, match="result 'c' does not exist; available: a"):
+        compare([member("a", degrees=0.0)], "c")
+
+
+SETTINGS = CohortSettings(name="lab", source="a test")
+
+
+def test_a_cohort_is_mean_and_deviation_between_persons():
+    cohort, notes = build_cohort([shifted(d) for d in (-3.0, 0.0, 3.0)], SETTINGS)
+    band = cohort.bin("all speeds").curves["hip_flexion"]
+    both = np.mean([curve("hip_flexion", side)["mean"] for side in ("left", "right")], axis=0)
+    assert not notes and cohort.bins[0].n == 3
+    assert band.mean == pytest.approx(both) and band.sd == pytest.approx(np.full(101, 3.0))
+
+
+def test_a_cohort_knows_how_far_its_own_persons_are_from_its_mean():
+    documents = [shifted(d) for d in (-3.0, 3.0)]
+    part = build_cohort(documents, SETTINGS)[0].bins[0]
+    means = {name: np.array(band.mean) for name, band in part.curves.items()}
+    sides = [
+        {name: np.array(curve(name, side)["mean"]) + d for name in CURVES}
+        for d in (-3.0, 3.0)
+        for side in ("left", "right")
+    ]
+    expected = [gait_profile(side, means).gps for side in sides]
+    assert part.gps.mean == pytest.approx(np.mean(expected))
+
+
+def test_speed_bins_divide_persons_and_small_ones_are_told():
+    settings = CohortSettings(name="lab", source="a test", speed_edges=(0.3, 0.5))
+    documents = [shifted(0.0, speed=s) for s in (0.5, 1.0, 1.1, 1.5, 1.6, 1.7)]
+    cohort, notes = build_cohort(documents, settings)
+    assert {part.name: part.n for part in cohort.bins} == {"0.3 to 0.5": 2, "from 0.5": 3}
+    assert cohort.default_bin == "from 0.5" and "below 0.3" in notes[0]
+
+
+def test_one_person_is_no_cohort():
+    with pytest.raises(InvalidReference, match="1 of the 2 persons"):
+        build_cohort([shifted(0.0)], SETTINGS)
