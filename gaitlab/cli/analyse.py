@@ -7,6 +7,7 @@ import typer
 
 from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotConverged
+from ..inverse.leg_kinetics import MomentFrame
 from ..pipelines.analyse import Sources, analyse_files
 from ..pipelines.options import AnalysisOptions
 from ..pipelines.output import make_folder, write_analysis
@@ -39,6 +40,10 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     file_offsets: Annotated[
         bool, typer.Option(help="Use the static offsets stored in the file, not those computed.")
     ] = False,
+    moments_in: Annotated[MomentFrame, typer.Option(help="Axes that joint moments are expressed in.")] = "distal",
+    vicon_inertia: Annotated[
+        bool, typer.Option(help="Segment inertia as in Plug-in Gait, to compare moments.")
+    ] = False,
     norms: Annotated[str, typer.Option(help="Reference cohort: a file of 'gaitlab norms build', or none.")] = BUNDLED,
     match_speed: Annotated[bool, typer.Option(help="Compare with norms of the person's own speed.")] = False,
     gdi: Annotated[Path | None, typer.Option(help="Basis of the gait deviation index, from norms import-gdi.")] = None,
@@ -56,6 +61,8 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
         trunk_joint=trunk_joint,
         redetect_events=redetect_events,
         static_offsets="file" if file_offsets else "computed",
+        moment_frame=moments_in,
+        kinetics_inertia="plug-in gait" if vicon_inertia else "subject",
         references=ReferenceOptions(
             norms=norms, gdi=str(gdi or ""), speed="matched" if match_speed else "default", age=age
         ),
