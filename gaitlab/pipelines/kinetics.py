@@ -15,7 +15,6 @@ from ..clinical.kinetics_document import (
     KineticsEntry,
     UnitCurve,
 )
-from ..errors import InvalidRecording
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.leg_kinetics import Kinetics, KineticsSettings, solve_kinetics
 from ..mocap.cycles import Cycle
@@ -45,7 +44,7 @@ class TrialKinetics:
 
     name: str
     kinetics: Kinetics | None
-    """None where the file holds no plate or a foot has no marker."""
+    """None where the file holds no plate."""
     curves: CycleCurves
     """Moments, powers and ground reactions by name; only cycles with a measured ground reaction are whole."""
     emg: CycleCurves
@@ -86,10 +85,7 @@ def _solve(
 ) -> tuple[Kinetics | None, tuple[str, ...], tuple[str, ...]]:
     if not recording.force_plates:
         return None, (f"{recording.name}: no kinetics, the file holds no usable force plate",), ()
-    try:
-        contacts = assign_contacts(recording, events)
-    except InvalidRecording as error:
-        return None, (f"{recording.name}: no kinetics, {error}",), ()
+    contacts = assign_contacts(recording, events)
     said = contact_sentences(contacts, recording.name)
     missing = tuple(
         f"{recording.name}: no kinetics of the {side} side, its foot has no valid contact with a force plate"
