@@ -6,11 +6,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from ..clinical.comparison import MINIMAL, Comparison, Member, MinimalDifference, Table, tables
 from ..clinical.document import read_document
 from ..errors import InvalidRecording, OutputError
 
 RESULT = "result.json"
+_FIRST_SAMPLE = "p0"
 
 
 def read_members(arguments: Sequence[str]) -> tuple[tuple[Member, ...], tuple[str, ...]]:
@@ -75,7 +78,15 @@ def _write_csv(table: Table, path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(table.columns)
-        writer.writerows(table.rows)
+        if _FIRST_SAMPLE not in table.columns:
+            writer.writerows(table.rows)
+            return
+        # Samples of curves are many: JSON writes numbers ten times as fast as csv does.
+        start = table.columns.index(_FIRST_SAMPLE)
+        head = csv.writer(file, lineterminator=",")
+        for row in table.rows:
+            head.writerow(row[:start])
+            file.write(msgspec.json.encode(row[start:])[1:-1].decode().replace("null", "") + "\n")
 
 
 def _write_parquet(table: Table, path: Path) -> None:
