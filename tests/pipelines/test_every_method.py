@@ -38,4 +38,5 @@ def test_methods_agree_or_say_why_not(name, method):
         assert result.reason
         return
     assert result.objective == pytest.approx(reference.objective, rel=2e-3)
-    assert result.residuals.max() < 1e-5
+    # A product of slack and multiplier grows with the weights, here up to 1e4: the smaller of both factors does not.
+    assert max(result.residuals.stationarity, result.residuals.primal, result.complementarity) < 1e-5
