@@ -29,6 +29,7 @@ LOW = 0.15  # m above the plate; markers of a standing foot are no higher
 OTHER_FOOT = 0.03  # s that the other foot must stand on the plate to spoil it
 EDGE = 0.025  # m; a heel or toe marker that far beside the plate still has its sole on it
 RAISED = 0.05  # m above the lowest plate; toes that overhang a step touch nothing
+PAUSE = 0.2  # s without load; the shortest swing is longer
 STANCE_TOLERANCE = 0.1  # s between plate and events, more than detection is ever wrong
 
 
@@ -70,8 +71,8 @@ def assign_contacts(recording: Recording, events: Sequence[Event]) -> tuple[Plat
     found: list[PlateContact] = []
     for index, plate in enumerate(recording.force_plates):
         on_plate = _OnPlate(recording, plate, motions, floor)
-        for start, end in contacts(plate):
-            found.append(_judge(index, on_plate, start / plate.rate, end / plate.rate, events))
+        loads = [(start / plate.rate, end / plate.rate) for start, end in contacts(plate)]
+        found += [_judge(index, on_plate, start, end, events) for start, end in _stances(on_plate, loads)]
     return tuple(sorted(found, key=lambda contact: contact.start))
 
 
@@ -125,6 +126,13 @@ class _OnPlate:
         """Share of the load inside the outline of one foot."""
         return outline_share(self.centre[frames], self.load[frames], self.motions[side], frames)
 
+    def owner(self, start: float, end: float) -> Side | None:
+        """The foot whose outline holds the centre of pressure between two times [s]; None where there is none."""
+        frames = self.frames(start, end)
+        shares = {side: self.share(side, frames) for side in SIDES}
+        side = max(SIDES, key=lambda s: shares[s])
+        return side if shares[side] >= FOREIGN else None
+
     def inside(self, points: np.ndarray) -> np.ndarray:
         """How far points (n, 3) [m] are inside the nearest edge [m], negative outside, shape (n,)."""
         distances: list[np.ndarray] = []
@@ -156,26 +164,37 @@ class _OnPlate:
         return max(0.0, -float(np.median(np.minimum(heel, toe))))
 
 
+def _stances(on_plate: _OnPlate, loads: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Loadings [s] of one plate; those that one foot makes with a pause shorter than any swing are one stance."""
+    merged: list[tuple[float, float]] = []
+    for start, end in loads:
+        paused = bool(merged) and start - merged[-1][1] <= PAUSE
+        if paused and on_plate.owner(*merged[-1]) == on_plate.owner(start, end) is not None:
+            merged[-1] = (merged[-1][0], end)
+        else:
+            merged.append((start, end))
+    return merged
+
+
 def _judge(index: int, on_plate: _OnPlate, start: float, end: float, events: Sequence[Event]) -> PlateContact:
-    frames = on_plate.frames(start, end)
-    shares = {side: on_plate.share(side, frames) for side in SIDES}
-    side = max(SIDES, key=lambda s: shares[s])
-    if shares[side] < FOREIGN:
+    side = on_plate.owner(start, end)
+    if side is None:
         reason = "no foot is above its centre of pressure"
         return PlateContact(plate=index, start=start, end=end, side=None, reason=reason)
-    reason = _reason(on_plate, side, frames, shares[side])
+    reason = _reason(on_plate, side, on_plate.frames(start, end))
     if not reason and not _stance_fits(side, start, end, events):
         reason = "the foot stood longer than the plate was loaded, so it stood partly beside it"
     return PlateContact(plate=index, start=start, end=end, side=side, reason=reason)
 
 
-def _reason(on_plate: _OnPlate, side: Side, frames: slice, share: float) -> str:
+def _reason(on_plate: _OnPlate, side: Side, frames: slice) -> str:
     other: Side = "right" if side == "left" else "left"
     if on_plate.stands_here(other, frames):
         return f"the {other} foot stood on it too"
     beside = on_plate.beside(side, frames)
     if beside > EDGE and not on_plate.raised:
         return f"the foot stood partly beside it ({100.0 * beside:.0f} cm)"
+    share = on_plate.share(side, frames)
     if share < OWN:
         return f"its centre of pressure leaves the foot during {100.0 * (1.0 - share):.0f} % of the load"
     return ""

@@ -75,6 +75,14 @@ def test_toes_may_overhang_a_step():
     assert only(flat).reason and not only(stairs).reason
 
 
+def test_a_foot_that_lets_go_for_a_moment_makes_one_contact():
+    walk = pressed(STRIKE, OFF, rectangle(MIDDLE, HEEL[1]))
+    (plate,) = walk.force_plates
+    plate.force[1500:1540] = 0.0
+    plate.moment[1500:1540] = 0.0
+    assert (only(walk).side, only(walk).reason) == ("left", "")
+
+
 def test_no_plate_no_contact():
     assert assign_contacts(WALK, WALK.events) == ()
 
