@@ -115,10 +115,12 @@ def _result(
     lower, upper = settings.limits(subject)
     known = valid_rows(fit.q)
     outside = np.logical_or.reduce((fit.q < lower - SLACK) | (fit.q > upper + SLACK), axis=0)
-    squares = np.concatenate(list(_residuals(subject, used, fit.q).values())) ** 2
+    residuals = _residuals(subject, markers, fit.q)
+    kept = [residuals[name][valid_rows(y)] for name, y in used.items()]
+    squares = np.concatenate(kept) ** 2
     return InverseKinematics(
         q=fit.q,
-        residuals=_residuals(subject, markers, fit.q),
+        residuals=residuals,
         marker_rms=float(np.sqrt(np.nanmean(squares))),
         left_out=_count_left_out({name: np.where(known[:, None], markers[name], np.nan) for name in used}, used),
         known=known,
@@ -276,6 +278,8 @@ def _without_gaps(q: np.ndarray) -> np.ndarray:
     """Coordinates with unknown frames interpolated, constant before the first and after the last known one."""
     frames, result = np.arange(len(q)), q.copy()
     result[:, 3:] = unwrapped(result[:, 3:])
+    if np.isfinite(result).all():
+        return result
     for column in result.T:
         known = np.isfinite(column)
         column[~known] = np.interp(frames[~known], frames[known], column[known]) if known.any() else 0.0
