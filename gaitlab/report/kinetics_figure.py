@@ -72,5 +72,4 @@ def _emg_panel(label: str, index: int, highest: float) -> CyclePanel:
     row, column = divmod(index, 3)
     left, top = 66.0 + column * _COLUMN, _TOP + row * _EMG_ROW
     axes = Axes(left=left, top=top, width=_PANEL_WIDTH, height=_EMG_HEIGHT, x_range=(0.0, 100.0), y_range=(0.0, 125.0))
-    title = f"{label} (100 % = {highest:.2g} in the file's unit)"
-    return CyclePanel(name=label, title=title, axes=axes, direction="% of max")
+    return CyclePanel(name=label, title=label, axes=axes, direction=f"% of {highest:.2g}")

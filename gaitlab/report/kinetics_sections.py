@@ -62,9 +62,9 @@ def emg_section(result: Result) -> str:
     if not result.emg:
         return ""
     words = (
-        f"Linear envelopes ({part.get('filter') or 'filter not stated'}); each in percent of its own maximum, so "
-        "heights cannot be compared between muscles or sessions. A channel whose label names no side is drawn over the "
-        "cycles of both."
+        f"Linear envelopes ({part.get('filter') or 'filter not stated'}); each in percent of its own maximum, "
+        "which the axis gives in the unit of the file, so heights cannot be compared between muscles or sessions. A channel "
+        "whose label names no side is drawn over the cycles of both."
     )
     return tag(
         "section", tag("h2", "EMG") + emg_figure(result.emg, marks_of(result)) + paragraph(words, "note"), "page"

@@ -45,7 +45,8 @@ def page(tmp_path):
         "an internal extensor moment is an external flexor moment",
         REASON,
         "not used: the left foot stood on it too",
-        "Voltage.L Rect (100 % = 0.002 in the file's unit)",
+        "Voltage.L Rect",
+        "% of 0.002",
         "band-pass 20-450 Hz",
     ],
 )
