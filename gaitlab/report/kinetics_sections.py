@@ -63,8 +63,8 @@ def emg_section(result: Result) -> str:
         return ""
     words = (
         f"Linear envelopes ({part.get('filter') or 'filter not stated'}); each in percent of its own maximum, "
-        "which the axis gives in the unit of the file, so heights cannot be compared between muscles or sessions. A channel "
-        "whose label names no side is drawn over the cycles of both."
+        "which the axis gives in the unit of the file, so heights cannot be compared between muscles or sessions. "
+        "A channel whose label names no side is drawn over the cycles of both."
     )
     return tag(
         "section", tag("h2", "EMG") + emg_figure(result.emg, marks_of(result)) + paragraph(words, "note"), "page"
