@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterator
 from math import inf
 
+from demo_stride import request_of
 from registry import CHILDREN, SHARED_DATA, Row, measurement
 
 from gaitlab.bilevel.result import rms
@@ -54,17 +55,8 @@ def _both_strides(child: str, strides: list[MeasuredStride], workers: Workers) -
 def _request(child: str) -> WeightsRequest:
     folder = SHARED_DATA / "children" / child
     static, walk = (next(folder.glob(f"{kind}_*.c3d")) for kind in ("static", "straight"))
-    options = AnalysisOptions(weights=False)
-    trial = analyse_files(Sources(walks=(walk,), static=static), options).trials[0]
-    return WeightsRequest(
-        recording=trial.recording,
-        events=trial.events,
-        subject=trial.subject,
-        q=trial.motion.q,
-        heading=trial.kinematics.heading,
-        criteria=options.criteria,
-        seed=options.seed,
-    )
+    trial = analyse_files(Sources(walks=(walk,), static=static), AnalysisOptions(weights=False)).trials[0]
+    return request_of(trial)
 
 
 def _explain(stride: MeasuredStride, workers: Workers) -> tuple[Explanation, tuple[float, float]]:

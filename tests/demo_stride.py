@@ -1,4 +1,4 @@
-"""The first stride of a bundled demo walk, ready to be tracked."""
+"""The first stride of an analysed trial or of a bundled demo walk, ready to be tracked."""
 
 from functools import lru_cache
 
@@ -15,9 +15,9 @@ def _trial(child):
     return analyse_files(sources, AnalysisOptions(weights=False)).trials[0]
 
 
-def demo_stride(child="demo_cp_child", landing="soft"):
-    trial = _trial(child)
-    request = WeightsRequest(
+def request_of(trial, landing="soft"):
+    """What the pipeline would ask of the weights of an analysed trial, with default options."""
+    return WeightsRequest(
         recording=trial.recording,
         events=trial.events,
         subject=trial.subject,
@@ -27,4 +27,11 @@ def demo_stride(child="demo_cp_child", landing="soft"):
         seed=0,
         landing=landing,
     )
-    return usable_strides(request)[0][0][1]
+
+
+def first_stride(trial, landing="soft"):
+    return usable_strides(request_of(trial, landing))[0][0][1]
+
+
+def demo_stride(child="demo_cp_child", landing="soft"):
+    return first_stride(_trial(child), landing)

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from demo_stride import first_stride
 
 from gaitlab.bilevel.implicit_gauss_newton import ImplicitGaussNewton
 from gaitlab.bilevel.result import rms
 from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.optimal_arrays import optimal_arrays
 from gaitlab.pipelines.options import AnalysisOptions
-from gaitlab.pipelines.weights import WeightsRequest, usable_strides
 from gaitlab.walking.explanation import explain
 
 pytestmark = [pytest.mark.shared_data, pytest.mark.slow]
@@ -27,16 +27,7 @@ def trial(shared_data):
 
 @pytest.fixture(scope="module")
 def found(trial):
-    request = WeightsRequest(
-        recording=trial.recording,
-        events=trial.events,
-        subject=trial.subject,
-        q=trial.motion.q,
-        heading=trial.kinematics.heading,
-        criteria=AnalysisOptions().criteria,
-        seed=0,
-    )
-    return explain(usable_strides(request)[0][0][1])
+    return explain(first_stride(trial))
 
 
 @pytest.fixture(scope="module")

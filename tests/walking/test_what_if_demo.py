@@ -1,37 +1,21 @@
 """A bundled demo stride followed from equal weights to more stability."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from demo_stride import demo_stride
 
-from gaitlab.pipelines.analyse import Sources, analyse_files
-from gaitlab.pipelines.options import AnalysisOptions
-from gaitlab.pipelines.weights import WeightsRequest, usable_strides
 from gaitlab.walking.identification import IdentificationSettings, WalkLevel
 from gaitlab.walking.tracking import track
 from gaitlab.walking.what_if import WhatIf, gait_curves, with_weight
 
 pytestmark = pytest.mark.slow
 
-DEMO = Path(__file__).parents[2] / "data" / "demo_cp_child"
 EQUAL = np.full(4, 0.25)
 
 
 @pytest.fixture(scope="module")
 def sweep():
-    sources = Sources(static=DEMO / "static.c3d", walks=(DEMO / "walk1.c3d",))
-    trial = analyse_files(sources, AnalysisOptions(weights=False)).trials[0]
-    request = WeightsRequest(
-        recording=trial.recording,
-        events=trial.events,
-        subject=trial.subject,
-        q=trial.motion.q,
-        heading=trial.kinematics.heading,
-        criteria=AnalysisOptions().criteria,
-        seed=0,
-    )
-    level = WalkLevel(track(usable_strides(request)[0][0][1]), IdentificationSettings())
+    level = WalkLevel(track(demo_stride()), IdentificationSettings())
     return WhatIf().sweep(level, (EQUAL, level.from_tracking(EQUAL)), with_weight(EQUAL, 0, 0.5), shares=(0.5,))
 
 
