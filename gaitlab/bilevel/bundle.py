@@ -23,7 +23,7 @@ from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerSettings, Response
 from .parameter_set import Rows, solve_quadratic
-from .reduced_objective import ReducedObjective, begin, conclude
+from .reduced_objective import ReducedObjective, search_parameters
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +59,9 @@ class Bundle:
         Raises:
             ProblemError: p0 has a wrong shape or is not finite.
         """
-        began = time.perf_counter()
-        objective = begin(problem, self.lower, w0, p0)
-        if isinstance(objective, InverseResult):
-            return objective
-        return conclude(objective, _Search(self, objective, began).run(), began)
+        return search_parameters(
+            problem, self.lower, (w0, p0), lambda objective, began: _Search(self, objective, began).run()
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .inverse_finish import Stop, finish, largest_upper_violation, unsolved
+from .inverse_finish import Stop, finish, first_response, largest_upper_violation, unsolved
 from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerLevel, LowerSettings, Response, Slopes
@@ -66,19 +66,13 @@ class PreparedGaussNewton:
         began = time.perf_counter()
         lower = self._lower
         lower.iterations = 0
-        p = self._problem.start(p0)
-        w0 = self._problem.lower_start(w0)
-        invalid = lower.invalid(w0, p)
-        response = lower.start(w0, p)
-        if invalid is not None and not response.solved:
-            stop = Stop(status=InverseStatus.INVALID_NUMBER, reason=invalid, iterations=0)
-            return finish(lower, response, stop, began)
-        if not response.solved:
-            return finish(lower, response, unsolved(lower, response, 0), began)
+        response = first_response(lower, w0, p0, began)
+        if isinstance(response, InverseResult):
+            return response
         search = _Search(self._settings, lower, response, began)
         stop = search.run()
         result = finish(lower, search.response, stop, began)
-        return self._off_the_plateau(search.response, result, p, began)
+        return self._off_the_plateau(search.response, result, response.p, began)
 
     def _off_the_plateau(self, end: Response, result: InverseResult, p0: np.ndarray, began: float) -> InverseResult:
         """Where the fit does not tell a parameter, go back to its first value and come again with shorter steps."""

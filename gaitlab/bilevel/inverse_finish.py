@@ -63,6 +63,23 @@ def lower_complementarity(nlp: NLP, solution: NLPSolution, p: np.ndarray) -> flo
     return float(np.max(np.where(lower == upper, 0.0, np.minimum(slack, np.abs(lam))), initial=0.0))
 
 
+def first_response(lower: LowerLevel, w0: np.ndarray, p0: np.ndarray, began: float) -> Response | InverseResult:
+    """Response from w0, shape (n_w,), and p0, shape (n_p,), or the result that says why there is none.
+
+    Raises:
+        ProblemError: w0 or p0 has a wrong shape or is not finite.
+    """
+    p, w0 = lower.problem.start(p0), lower.problem.lower_start(w0)
+    invalid = lower.invalid(w0, p)
+    response = lower.start(w0, p)
+    if response.solved:
+        return response
+    stop = unsolved(lower, response, 0)
+    if invalid is not None:
+        stop = Stop(status=InverseStatus.INVALID_NUMBER, reason=invalid, iterations=0)
+    return finish(lower, response, stop, began)
+
+
 def unsolved(lower: LowerLevel, response: Response, iterations: int) -> Stop:
     """Stop because the lower level has no solution here."""
     reason = lower.failure(response)

@@ -21,7 +21,7 @@ from ..nlp.mpcc import MPCC
 from ..nlp.mpcc_solution import MPCCSolution
 from ..nlp.outcome import Outcome
 from ..nlp.solution import KKTConditions, NLPSolution
-from .inverse_finish import Stop, finish, largest_upper_violation, unsolved
+from .inverse_finish import Stop, finish, first_response, largest_upper_violation
 from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerLevel, LowerSettings, Response
@@ -76,15 +76,9 @@ class PreparedReformulation:
         """Estimate from w0, shape (n_w,), and p0, shape (n_p,)."""
         began = time.perf_counter()
         self._lower.iterations = 0
-        p = self._problem.start(p0)
-        w0 = self._problem.lower_start(w0)
-        invalid = self._lower.invalid(w0, p)
-        response = self._lower.start(w0, p)
-        if not response.solved:
-            stop = unsolved(self._lower, response, 0)
-            if invalid is not None:
-                stop = Stop(status=InverseStatus.INVALID_NUMBER, reason=invalid, iterations=0)
-            return finish(self._lower, response, stop, began)
+        response = first_response(self._lower, w0, p0, began)
+        if isinstance(response, InverseResult):
+            return response
         found = self._method.solve(self._one_level.pack(response))
         end = self._response(found)
         status, reason = self._judge(found, end)

@@ -1,15 +1,18 @@
 """The upper level as a function of the free parameters alone: every value is a solution of the lower level."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from .inverse_finish import Stop, finish, largest_upper_violation, unsolved
+from .inverse_finish import Stop, finish, first_response, largest_upper_violation
 from .inverse_problem import InverseProblem
 from .inverse_result import InverseResult, InverseStatus
 from .lower_level import LowerLevel, LowerSettings, Response
 from .parameter_set import ParameterSet
+
+Start = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass
@@ -53,24 +56,26 @@ class ReducedObjective:
         return 0.5 * float(r @ r)
 
 
-def begin(
-    problem: InverseProblem, settings: LowerSettings, w0: np.ndarray, p0: np.ndarray
-) -> ReducedObjective | InverseResult:
-    """First response from w0, shape (n_w,), and p0, shape (n_p,), or the result that says why there is none."""
+Search = Callable[[ReducedObjective, float], Stop]
+"""Improves the objective's best point; gets `time.perf_counter()` of the start too."""
+
+
+def search_parameters(problem: InverseProblem, settings: LowerSettings, start: Start, search: Search) -> InverseResult:
+    """Estimate by a search over the free parameters from (w0, p0) of shapes (n_w,) and (n_p,).
+
+    Raises:
+        ProblemError: p0 has a wrong shape or is not finite.
+    """
     began = time.perf_counter()
-    lower, p = LowerLevel(problem, settings), problem.start(p0)
-    w0 = problem.lower_start(w0)
-    invalid = lower.invalid(w0, p)
-    response = lower.start(w0, p)
-    if response.solved:
-        return ReducedObjective(lower, response)
-    stop = unsolved(lower, response, 0)
-    if invalid is not None:
-        stop = Stop(status=InverseStatus.INVALID_NUMBER, reason=invalid, iterations=0)
-    return finish(lower, response, stop, began)
+    lower = LowerLevel(problem, settings)
+    response = first_response(lower, *start, began)
+    if isinstance(response, InverseResult):
+        return response
+    objective = ReducedObjective(lower, response)
+    return _conclude(objective, search(objective, began), began)
 
 
-def conclude(objective: ReducedObjective, stop: Stop, began: float) -> InverseResult:
+def _conclude(objective: ReducedObjective, stop: Stop, began: float) -> InverseResult:
     """Result of the best point; a claimed convergence is checked against the upper level's constraints."""
     violation, sentence = largest_upper_violation(objective.lower.problem, objective.best.upper)
     if stop.status is InverseStatus.CONVERGED and violation > 1e-4:

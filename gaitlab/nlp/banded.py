@@ -162,11 +162,3 @@ class KKTAssembly:
         shift = np.concatenate([np.full(s.n_w, delta[0]), np.full(s.n_g, -delta[1])])
         moved[self.position, 2 * self.bandwidth] += shift
         return moved
-
-    def multiply(self, pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_rows: int) -> np.ndarray:
-        """Product of a sparse matrix given by its entries with x, shape (n_cols,); result of shape (n_rows,)."""
-        return np.bincount(pattern.rows, weights=entries * x[pattern.cols], minlength=n_rows)
-
-    def multiply_transposed(self, pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_cols: int) -> np.ndarray:
-        """Product of its transpose with x, shape (n_rows,); result of shape (n_cols,)."""
-        return np.bincount(pattern.cols, weights=entries * x[pattern.rows], minlength=n_cols)

@@ -14,7 +14,7 @@ import numpy as np
 
 from .banded import kkt_assembly
 from .filter_search import Filter, Merit, backtrack
-from .sparse_problem import Derivatives, SparseProblem, Values
+from .sparse_problem import Derivatives, SparseProblem, Values, multiply, multiply_transposed
 from .sparse_solution import SparseSolution, Status, certify
 
 LARGEST_DELTA = 1e8
@@ -145,11 +145,10 @@ class _Run:
 
     def _stationarity(self, x: Iterate, derivatives: Derivatives) -> np.ndarray:
         s = self.structure
-        products = self.assembly
         return (
             derivatives.grad
-            + products.multiply_transposed(s.jac_g, derivatives.jac_g, x.lam_g, s.n_w)
-            - products.multiply_transposed(s.jac_c, derivatives.jac_c, x.lam_c, s.n_w)
+            + multiply_transposed(s.jac_g, derivatives.jac_g, x.lam_g, s.n_w)
+            - multiply_transposed(s.jac_c, derivatives.jac_c, x.lam_c, s.n_w)
         )
 
     def _error(self, x: Iterate, values: Values, derivatives: Derivatives, mu: float) -> float:
@@ -211,15 +210,13 @@ class _Run:
     def _solve_newton(
         self, x: Iterate, values: Values, derivatives: Derivatives, solve: Callable[[np.ndarray], np.ndarray]
     ) -> Step:
-        st, products = self.structure, self.assembly
+        st = self.structure
         residual_c = values.c - x.s
         pull = self.mu / x.s - x.lam_c - x.lam_c / x.s * residual_c
-        top = -self._stationarity(x, derivatives) + products.multiply_transposed(
-            st.jac_c, derivatives.jac_c, pull, st.n_w
-        )
+        top = -self._stationarity(x, derivatives) + multiply_transposed(st.jac_c, derivatives.jac_c, pull, st.n_w)
         solution = solve(np.concatenate([top, -values.g]))
         dw, dlam = solution[: st.n_w], solution[st.n_w :]
-        ds = products.multiply(st.jac_c, derivatives.jac_c, dw, st.n_c) + residual_c
+        ds = multiply(st.jac_c, derivatives.jac_c, dw, st.n_c) + residual_c
         return Step(dw, ds, dlam, self.mu / x.s - x.lam_c - x.lam_c / x.s * ds)
 
     def _search(

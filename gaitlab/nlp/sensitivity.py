@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import NotConverged
 from .banded import BandedLU, kkt_assembly
-from .sparse_problem import Derivatives, SparseProblem
+from .sparse_problem import Derivatives, SparseProblem, multiply
 from .sparse_solution import SparseSolution
 
 
@@ -53,7 +53,7 @@ class Sensitivity:
         """First-order prediction of the solution after a move, direction of (w, lam_g), shape (n_w + n_g,)."""
         x, n_w = self.solution, self.structure.n_w
         dw = direction[:n_w]
-        ds = self.assembly.multiply(self.structure.jac_c, self.derivatives.jac_c, dw, self.structure.n_c)
+        ds = multiply(self.structure.jac_c, self.derivatives.jac_c, dw, self.structure.n_c)
         # A linear prediction must not leave the interior.
         s = np.maximum(x.s + ds, 0.1 * x.s)
         lam_c = np.maximum(x.lam_c - self.sigma * ds, 0.1 * x.lam_c)

@@ -76,6 +76,16 @@ class SparseProblem(Protocol):
         ...
 
 
+def multiply(pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_rows: int) -> np.ndarray:
+    """Product of a sparse matrix given by its entries with x, shape (n_cols,); result of shape (n_rows,)."""
+    return np.bincount(pattern.rows, weights=entries * x[pattern.cols], minlength=n_rows)
+
+
+def multiply_transposed(pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_cols: int) -> np.ndarray:
+    """Product of its transpose with x, shape (n_rows,); result of shape (n_cols,)."""
+    return np.bincount(pattern.cols, weights=entries * x[pattern.rows], minlength=n_cols)
+
+
 def pairs_in_rows(rows: np.ndarray, entries: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """All ordered pairs of entries, shape (nnz,), that share a row, shape (nnz,): (row, first, second)."""
     order = np.argsort(rows, kind="stable")

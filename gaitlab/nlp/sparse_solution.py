@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from .solution import KKTResiduals
-from .sparse_problem import Pattern, SparseProblem
+from .sparse_problem import SparseProblem, multiply_transposed
 
 
 class Status(StrEnum):
@@ -78,8 +78,8 @@ def certify(problem: SparseProblem, x: PrimalDual, *, mu: float, iterations: int
     structure = problem.structure
     stationarity = (
         derivatives.grad
-        + _transposed(structure.jac_g, derivatives.jac_g, x.lam_g, structure.n_w)
-        - _transposed(structure.jac_c, derivatives.jac_c, x.lam_c, structure.n_w)
+        + multiply_transposed(structure.jac_g, derivatives.jac_g, x.lam_g, structure.n_w)
+        - multiply_transposed(structure.jac_c, derivatives.jac_c, x.lam_c, structure.n_w)
     )
     residuals = KKTResiduals(
         stationarity=_norm(stationarity),
@@ -90,10 +90,6 @@ def certify(problem: SparseProblem, x: PrimalDual, *, mu: float, iterations: int
         w=x.w, s=x.s, lam_g=x.lam_g, lam_c=x.lam_c, f=values.f, mu=mu,
         iterations=iterations, residuals=residuals, status=status,
     )  # fmt: skip
-
-
-def _transposed(pattern: Pattern, entries: np.ndarray, x: np.ndarray, n_cols: int) -> np.ndarray:
-    return np.bincount(pattern.cols, weights=entries * x[pattern.rows], minlength=n_cols)
 
 
 def _norm(v: np.ndarray) -> float:
