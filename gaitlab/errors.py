@@ -10,6 +10,11 @@
   + WorkerLost          a process that computed for us ended without a result
   + OutputError         a result cannot be written
   + NotFound            no stored object has this identifier
+  + AccessDenied        the caller may not do this
+    - NotSignedIn       nobody is signed in, or the credentials are wrong
+    - TooManyAttempts   too often in too short a time; carries when to try again
+  + InvalidRequest      what a client sent cannot be used: too large, out of place, malformed
+    - TooLarge          more bytes than the limit
 """
 
 from collections.abc import Iterable
@@ -57,3 +62,28 @@ class NotFound(GaitlabError):
     def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
         known = ", ".join(sorted(available)) or "none"
         super().__init__(f"{kind} '{name}' does not exist; available: {known}")
+
+
+class AccessDenied(GaitlabError):
+    """The caller may not do this."""
+
+
+class NotSignedIn(AccessDenied):
+    """Nobody is signed in, or the credentials are wrong."""
+
+
+class TooManyAttempts(AccessDenied):
+    """Something was tried too often."""
+
+    def __init__(self, message: str, seconds: float) -> None:
+        super().__init__(message)
+        self.seconds = seconds
+        """Time until it may be tried again [s]."""
+
+
+class InvalidRequest(GaitlabError):
+    """What a client sent cannot be used."""
+
+
+class TooLarge(InvalidRequest):
+    """A client sent more bytes than the limit."""
