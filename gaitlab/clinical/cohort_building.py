@@ -1,15 +1,16 @@
 """A reference cohort from a laboratory's own results of able-bodied people."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ..errors import InvalidReference
-from .document import CURVES, SIDES, Curve, Document
+from .document import CURVES, SIDES, Curve, CurveSides, Document
 from .gait_profile import gait_profile
-from .normative import ReferenceCohort, ReferenceValue, SpeedBin, band_of, value_of
+from .kinetics_document import UNITS, CycleAverage, UnitCurve
+from .normative import ReferenceBand, ReferenceCohort, ReferenceValue, SpeedBin, band_of, value_of
 from .spatiotemporal import NormalisedSpatiotemporal, Spatiotemporal
 
 FEWEST = 2
@@ -35,6 +36,8 @@ class _Person:
 
     curves: dict[str, np.ndarray]
     """Name to mean of the sides [deg], shapes (101,)."""
+    kinetics: dict[str, np.ndarray]
+    """The same of moments, powers and ground reactions, in their units, shapes (101,)."""
     sides: tuple[dict[str, np.ndarray], ...]
     """The same of each side, shapes (101,)."""
     spatiotemporal: dict[str, float]
@@ -99,22 +102,27 @@ def _bin_name(low: float, high: float) -> str:
 
 
 def _person(document: Document) -> _Person:
-    sides = tuple(_side_curves(document, side) for side in SIDES)
-    curves = {name: [side[name] for side in sides if name in side] for name in CURVES}
+    sides = tuple(_side_curves(document.kinematics, side) for side in SIDES)
+    forces = tuple(_side_curves({} if document.kinetics is None else document.kinetics.curves, s) for s in SIDES)
     entries = [entry for entry in (document.spatiotemporal.left, document.spatiotemporal.right) if entry is not None]
     return _Person(
-        curves={name: np.mean(values, axis=0) for name, values in curves.items() if values},
+        curves=_mean_of_sides(sides, CURVES),
+        kinetics=_mean_of_sides(forces, tuple(UNITS)),
         sides=sides,
         spatiotemporal=_means([entry.mean for entry in entries]),
         normalised=_means([entry.normalised for entry in entries]),
     )
 
 
-def _side_curves(document: Document, side: str) -> dict[str, np.ndarray]:
+def _mean_of_sides(sides: Sequence[Mapping[str, np.ndarray]], names: Sequence[str]) -> dict[str, np.ndarray]:
+    known = {name: [side[name] for side in sides if name in side] for name in names}
+    return {name: np.mean(values, axis=0) for name, values in known.items() if values}
+
+
+def _side_curves(curves: Mapping[str, CurveSides | UnitCurve], side: str) -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {}
-    for name in CURVES:
-        sides = document.kinematics.get(name)
-        curve: Curve | None = None if sides is None else getattr(sides, side)
+    for name, sides in curves.items():
+        curve: Curve | CycleAverage | None = getattr(sides, side)
         if curve is not None and None not in curve.mean:
             found[name] = np.array(curve.mean, dtype=float)
     return found
@@ -127,8 +135,7 @@ def _means(entries: Sequence[Spatiotemporal | NormalisedSpatiotemporal]) -> dict
 
 
 def _bin(name: str, people: Sequence[_Person]) -> SpeedBin:
-    gathered = {curve: [person.curves[curve] for person in people if curve in person.curves] for curve in CURVES}
-    curves = {curve: band_of(values) for curve, values in gathered.items() if len(values) >= FEWEST}
+    curves = _bands([person.curves for person in people])
     speeds = [person.normalised["speed"] for person in people if "speed" in person.normalised]
     means = {curve: np.array(band.mean) for curve, band in curves.items()}
     profiles = [gait_profile(side, means) for person in people for side in person.sides]
@@ -140,11 +147,18 @@ def _bin(name: str, people: Sequence[_Person]) -> SpeedBin:
         speed=value_of(speeds) if len(speeds) >= FEWEST else None,
         speed_range=(min(speeds), max(speeds)) if speeds else None,
         curves=curves,
+        kinetics=_bands([person.kinetics for person in people]),
         spatiotemporal=_values([person.spatiotemporal for person in people]),
         normalised=_values([person.normalised for person in people]),
         gvs={curve: value_of(values) for curve, values in scores.items() if len(values) >= FEWEST},
         gps=value_of(totals) if len(totals) >= FEWEST else None,
     )
+
+
+def _bands(people: Sequence[dict[str, np.ndarray]]) -> dict[str, ReferenceBand]:
+    names = dict.fromkeys(name for person in people for name in person)
+    gathered = {name: [person[name] for person in people if name in person] for name in names}
+    return {name: band_of(values) for name, values in gathered.items() if len(values) >= FEWEST}
 
 
 def _values(people: Sequence[dict[str, float]]) -> dict[str, ReferenceValue]:

@@ -77,3 +77,9 @@ class EmgEntry(msgspec.Struct, frozen=True, kw_only=True):
     """By the file's label, in the file's unit."""
     filter: str
     """How the envelope was made, in words."""
+    activity: dict[str, dict[Side, list[tuple[float, float]]]] = {}
+    """By label and side: start and end [%] of each part of the cycle in which the muscle is active."""
+    activity_rule: str = ""
+    """When it counts as active, in words."""
+    muscles: dict[str, str] = {}
+    """Label to the muscle that it names, as norms call it; labels that name none are absent."""

@@ -16,7 +16,7 @@ SpeedChoice = Literal["default", "matched"]
 
 
 class ReferenceBand(msgspec.Struct, frozen=True, kw_only=True):
-    """Mean and standard deviation between persons of one curve, 0 to 100 % of the cycle, 101 samples each, deg."""
+    """Mean and standard deviation between persons of one curve, 0 to 100 % of the cycle, 101 samples each."""
 
     mean: list[float]
     sd: list[float]
@@ -40,6 +40,11 @@ class SpeedBin(msgspec.Struct, frozen=True, kw_only=True):
     speed_range: tuple[float, float] | None = None
     """Slowest and fastest walk of the bin, dimensionless."""
     curves: dict[str, ReferenceBand]
+    """The nine angles [deg]."""
+    kinetics: dict[str, ReferenceBand] = {}
+    """By the names and in the units of `clinical.kinetics_document.UNITS`."""
+    emg: dict[str, ReferenceBand] = {}
+    """Envelopes by muscle (`mocap.emg.MUSCLES`), part of a maximum."""
     spatiotemporal: dict[str, ReferenceValue] = {}
     """By the names of `clinical.spatiotemporal.Spatiotemporal`."""
     normalised: dict[str, ReferenceValue] = {}
@@ -60,6 +65,8 @@ class ReferenceCohort(msgspec.Struct, frozen=True, kw_only=True):
     population: str = ""
     age_years: tuple[float, float] | None = None
     """Youngest and oldest; null where not known."""
+    age_words: str = ""
+    """Printed instead of the ages, where the source at hand does not state them in years."""
     default_bin: str
     bins: list[SpeedBin]
 
@@ -108,7 +115,7 @@ def _check(cohort: ReferenceCohort, name: str) -> None:
     for part in cohort.bins:
         if part.n < 1 or not part.curves:
             raise InvalidReference(f"norms {name}, bin {part.name}: no persons or no curves")
-        for curve, band in part.curves.items():
+        for curve, band in (part.curves | part.kinetics | part.emg).items():
             _check_band(band, f"norms {name}, bin {part.name}, {curve}")
 
 
@@ -126,7 +133,8 @@ def age_problem(cohort: ReferenceCohort, age: float | None) -> str:
     low, high = cohort.age_years
     if low <= age < high + 1.0:
         return ""
-    return f"no norms for this age: {cohort.name} holds {low:g} to {high:g} years, this person is {age:g}"
+    held = cohort.age_words or f"{low:g} to {high:g} years"
+    return f"no norms for this age: {cohort.name} holds {held}, this person is {age:g}"
 
 
 def choose_bin(cohort: ReferenceCohort, choice: SpeedChoice, speed: float | None) -> tuple[SpeedBin, str]:
@@ -148,7 +156,7 @@ def choose_bin(cohort: ReferenceCohort, choice: SpeedChoice, speed: float | None
 
 
 def band_of(curves: Sequence[np.ndarray]) -> ReferenceBand:
-    """Mean and sample standard deviation of persons' curves [deg], shape (101,) each, two at least."""
+    """Mean and sample standard deviation of persons' curves, any unit, shape (101,) each, two at least."""
     stacked = np.array(curves)
     return ReferenceBand(mean=stacked.mean(axis=0).tolist(), sd=stacked.std(axis=0, ddof=1).tolist())
 
@@ -160,7 +168,8 @@ def value_of(values: Sequence[float]) -> ReferenceValue:
 
 def describe(cohort: ReferenceCohort, part: SpeedBin) -> str:
     """Source, n, age and speed of a band, as printed beside it."""
-    age = "age not stated" if cohort.age_years is None else f"{cohort.age_years[0]:g}-{cohort.age_years[1]:g} years"
+    years = "" if cohort.age_years is None else f"{cohort.age_years[0]:g}-{cohort.age_years[1]:g} years"
+    age = cohort.age_words or years or "age not stated"
     speed = "" if part.speed is None else f" ({part.speed.mean:.2f} ± {part.speed.sd:.2f} of sqrt(g leg length))"
     return f"{cohort.name}, n = {part.n}, {age}, speed: {part.name}{speed}"
 

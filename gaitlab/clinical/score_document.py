@@ -50,6 +50,11 @@ class ReferenceEntry(msgspec.Struct, frozen=True, kw_only=True):
     age_years: tuple[float, float] | None
     speed_bin: str
     curves: dict[str, ReferenceBand]
+    """Angles [deg]."""
+    kinetics: dict[str, ReferenceBand] = {}
+    """Moments [N*m/kg], powers [W/kg] and ground reactions [% of body weight]."""
+    emg: dict[str, ReferenceBand] = {}
+    """Envelopes by muscle, part of a maximum."""
     spatiotemporal: dict[str, ReferenceValue] = {}
     """Dimensionless values are multiplied out with this person's mean leg length."""
     gvs: dict[str, ReferenceValue] = {}

@@ -19,6 +19,16 @@ _NAMED = re.compile(
 )
 _SIDE = re.compile(rf"^(L|R|LEFT|RIGHT)(?:[\s._-]+|(?=(?:{_MUSCLES})))", re.IGNORECASE)
 
+MUSCLES: Mapping[str, str] = {
+    "rectus_femoris": "RECT(US)?(FEM(ORIS)?)?|RF",
+    "medial_hamstrings": "MH|ST|SM|SEMI[A-Z]*|(MED(IAL)?|M)HAM[A-Z]*|HAM[A-Z]*",
+    "lateral_hamstrings": "LH|BF|BICEPS[A-Z]*|LAT(ERAL)?HAM[A-Z]*|HAM[A-Z]*LAT[A-Z]*",
+    "tibialis_anterior": "TA|TIB|TIB(IALIS)?ANT[A-Z]*|ANT(ERIOR)?TIB[A-Z]*",
+    "medial_gastrocnemius": "MG|(MED(IAL)?|M)?GAST?(ROC)?(NEMIUS)?|GAS[A-Z]*MED[A-Z]*",
+}
+"""Muscles of the usual gait examination to what their labels look like without side, blanks and numbers. Hamstrings and
+gastrocnemius of which the label says no more are taken for the medial ones; the first that fits is meant."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class EmgEnvelope:
@@ -59,6 +69,15 @@ def emg_side(label: str) -> Side | None:
     if found is None:
         return None
     return "left" if found[1].upper().startswith("L") else "right"
+
+
+def emg_muscle(label: str) -> str | None:
+    """Muscle (a name of `MUSCLES`) that a label names: 'Voltage.L Rect' is rectus_femoris; None for any other."""
+    name = _last_part(label)
+    side = _SIDE.match(name)
+    plain = re.sub(r"[^A-Z]", "", name[side.end() if side is not None else 0 :].upper())
+    lateral_first = sorted(MUSCLES, key=lambda muscle: muscle != "lateral_hamstrings")  # "hamstring lateral" is both
+    return next((muscle for muscle in lateral_first if re.fullmatch(MUSCLES[muscle], plain)), None)
 
 
 def _last_part(label: str) -> str:

@@ -15,10 +15,11 @@ from ..clinical.kinetics_document import (
     KineticsEntry,
     UnitCurve,
 )
+from ..clinical.muscle_activity import RULE, Span, active_spans
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.leg_kinetics import Kinetics, KineticsSettings, solve_kinetics
 from ..mocap.cycles import Cycle
-from ..mocap.emg import emg_envelopes
+from ..mocap.emg import emg_envelopes, emg_muscle
 from ..mocap.plate_assignment import assign_contacts, contact_sentences
 from ..mocap.recording import Event, Recording, Side
 from ..multibody.subject import SubjectModel
@@ -161,7 +162,19 @@ def emg_entry(trials: Sequence[TrialKinetics]) -> EmgEntry | None:
     if not labels:
         return None
     curves = [trial.emg for trial in trials]
-    return EmgEntry(envelopes={label: _unit_curve(curves, label, "file's unit") for label in labels}, filter=FILTER)
+    envelopes = {label: _unit_curve(curves, label, "file's unit") for label in labels}
+    return EmgEntry(
+        envelopes=envelopes,
+        filter=FILTER,
+        activity={label: _activity(curve) for label, curve in envelopes.items()},
+        activity_rule=RULE,
+        muscles={label: muscle for label in labels if (muscle := emg_muscle(label)) is not None},
+    )
+
+
+def _activity(curve: UnitCurve) -> dict[Side, list[Span]]:
+    sides: dict[Side, CycleAverage | None] = {"left": curve.left, "right": curve.right}
+    return {side: active_spans(np.array(one.mean, dtype=float)) for side, one in sides.items() if one is not None}
 
 
 def _unit_curve(curves: Sequence[CycleCurves], name: str, unit: str) -> UnitCurve:

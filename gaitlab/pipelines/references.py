@@ -89,7 +89,8 @@ def _unknown_age(cohort: ReferenceCohort | None, age: float | None) -> list[str]
     if cohort is None or cohort.age_years is None or age is not None:
         return []
     low, high = cohort.age_years
-    return [f"age of the person not given (--age): whether norms of {low:g} to {high:g} years apply is not checked"]
+    held = cohort.age_words or f"{low:g} to {high:g} years"
+    return [f"age of the person not given (--age): whether norms of {held} apply is not checked"]
 
 
 def norm_path(norms: str) -> Path:

@@ -34,7 +34,7 @@ def test_an_able_bodied_child_scores_as_one(analysed):
     scores = result["scores"]
     assert 3.4 <= scores["gps_overall"] <= 8.7
     assert set(scores["left"]["gvs"]) == set(result["kinematics"])
-    assert "mean ± 1 SD of Schwartz 2008, n = 82, 4-17 years" in text
+    assert "mean ± 1 SD of Schwartz 2008, n = 82, children (ages not stated)" in text
     assert "GDI: not computed, because no published feature basis is loaded" in text
 
 
@@ -80,7 +80,7 @@ def test_spatiotemporal_values_are_those_of_the_file_s_events(analysed, recordin
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (("--age", 40), "no norms for this age: Schwartz 2008 holds 4 to 17 years, this person is 40"),
+        (("--age", 40), "no norms for this age: Schwartz 2008 holds children (ages not stated), this person is 40"),
         (("--norms", "none"), "no norms: none were asked for"),
         (("--norms", "absent.json"), "no norms: norms absent.json cannot be read"),
         (("--norms", "atlantis"), "norms 'atlantis' does not exist; available: schwartz2008"),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from synthetic_walk import synthetic_walk
 
-from gaitlab.mocap.emg import emg_envelopes, emg_side, is_emg
+from gaitlab.mocap.emg import MUSCLES, emg_envelopes, emg_muscle, emg_side, is_emg
 
 
 @pytest.mark.parametrize(
@@ -34,6 +34,26 @@ def test_other_channels_are_not(label):
 )
 def test_sides(label, side):
     assert emg_side(label) == side
+
+
+@pytest.mark.parametrize(
+    ("label", "muscle"),
+    [
+        ("Voltage.L Rect", "rectus_femoris"),
+        ("RRF", "rectus_femoris"),
+        ("Voltage.R Hams", "medial_hamstrings"),
+        ("LST", "medial_hamstrings"),
+        ("R Ham Lat", "lateral_hamstrings"),
+        ("L BicepsFem", "lateral_hamstrings"),
+        ("Voltage.L Tib Ant", "tibialis_anterior"),
+        ("Voltage.L Tib Post", None),
+        ("RGAS", "medial_gastrocnemius"),
+        ("RLG", None),
+        ("Sensor 1.EMG1", None),
+    ],
+)
+def test_muscles_are_named(label, muscle):
+    assert emg_muscle(label) == muscle and (muscle is None or muscle in MUSCLES)
 
 
 def recorded(samples, rate=1000.0):
