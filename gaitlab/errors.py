@@ -10,6 +10,8 @@
   + WorkerLost          a process that computed for us ended without a result
   + OutputError         a result cannot be written
   + NotFound            no stored object has this identifier
+  + StorageError        the database or the file store cannot be used
+  + Conflict            somebody else changed the object meanwhile, or it is used elsewhere
   + AccessDenied        the caller may not do this
     - NotSignedIn       nobody is signed in, or the credentials are wrong
     - TooManyAttempts   too often in too short a time; carries when to try again
@@ -54,6 +56,19 @@ class WorkerLost(GaitlabError):
 
 class OutputError(GaitlabError):
     """A result cannot be written."""
+
+
+class StorageError(GaitlabError):
+    """The database or the file store cannot be used, or a stored file is not what it was."""
+
+
+class Conflict(GaitlabError):
+    """A change that does not fit the present state of what is stored."""
+
+    def __init__(self, sentence: str, current: int | None = None) -> None:
+        super().__init__(sentence)
+        self.current = current
+        """Version that the object has now; None where the conflict is not about versions."""
 
 
 class NotFound(GaitlabError):

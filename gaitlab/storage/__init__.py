@@ -1,0 +1,1 @@
+"""What is kept: database rows, content-addressed files, backups."""
