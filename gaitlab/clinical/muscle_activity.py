@@ -7,15 +7,15 @@ from .cycle_average import N_SAMPLES
 
 THRESHOLD = 0.25
 """Part of the way from the lowest to the largest mean value above which a muscle counts as active."""
-FLATTEST = 0.5
+FLATTEST = 1.0 / 3.0
 """Lowest over largest value above which a channel is not judged: it is noise, or a muscle that never rests."""
 SHORTEST = 5
 """Percent of the cycle: shorter bursts are not activity, shorter pauses do not end it."""
 RULE = (
     f"bars: the mean envelope is more than {100.0 * THRESHOLD:.0f} % of the way up from its lowest to its largest "
     f"value over the cycle; pauses and then bursts shorter than {SHORTEST} % of the closed cycle do not count; "
-    f"a channel whose lowest value is above {100.0 * FLATTEST:.0f} % of its largest has no bars. Another threshold moves "
-    "their ends"
+    f"a channel whose lowest value is above a third of its largest has no bars. Another threshold "
+    "moves their ends"
 )
 Span = tuple[float, float]
 """Start and end [%]."""

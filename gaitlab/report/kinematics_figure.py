@@ -88,11 +88,11 @@ def average_figure(
 ) -> str:
     """Draw the mean of each side, with a band of one standard deviation where there are two cycles or more."""
     drawn = {p.name: norm_band(p, norms) + averages(p.axes, kinematics.get(p.name, {})) for p in PANELS}
-    words = ("mean of the cycles, coloured band: ± 1 standard deviation", *_norm_legend(norms))
+    words = ("mean of the cycles, coloured band: ± 1 standard deviation", *norm_legend(norms))
     return _page(drawn, {p.name: mean_range(kinematics.get(p.name, {})) for p in PANELS}, marks, words)
 
 
-def norm_band(panel: Panel, norms: Norms) -> str:
+def norm_band(panel: CyclePanel, norms: Norms) -> str:
     """Grey band of the reference cohort, mean +- 1 standard deviation; empty where there is none."""
     band = norms.curves.get(panel.name)
     if band is None or band.sd is None:
@@ -101,7 +101,8 @@ def norm_band(panel: Panel, norms: Norms) -> str:
     return area(panel.axes, PERCENT, band.mean - band.sd, band.mean + band.sd, fill="#d3d8dd") + middle
 
 
-def _norm_legend(norms: Norms) -> tuple[str, ...]:
+def norm_legend(norms: Norms) -> tuple[str, ...]:
+    """What the grey band is: source, n, age and speed, or that there is none."""
     if not norms.curves:
         return ("no normative band: no reference cohort applies",)
     first, _, speed = norms.description.partition(", speed")
@@ -118,7 +119,7 @@ def consistency_figure(
         lines = "".join(cycle_line(panel.axes, s, y, 1.2) for s in SIDES for y in sides.get(s, ()))
         drawn[panel.name] = norm_band(panel, norms) + lines
         extents[panel.name] = value_range([y for s in SIDES for y in sides.get(s, ())])
-    return _page(drawn, extents, marks, ("each line is one cycle", *_norm_legend(norms)))
+    return _page(drawn, extents, marks, ("each line is one cycle", *norm_legend(norms)))
 
 
 def _page(

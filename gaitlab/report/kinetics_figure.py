@@ -1,19 +1,19 @@
 """The kinetics page: moments, powers and ground reactions over the gait cycle, columns hip, knee, ankle.
 
 Scales are always the same, so that pages can be compared by eye; a curve that leaves its scale is cut off and told.
-EMG envelopes have no common unit: each is drawn in percent of the largest mean of its channel.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from .cycle_panels import CyclePanel, Marks, averages, cycle_panel, legend, legend_lines, mean_range
+from .kinematics_figure import NO_NORMS, Norms, norm_band, norm_legend
 from .result import Curve
 from .svg import Axes, figure
 
 _WIDTH, _COLUMN, _ROW = 1000.0, 325.0, 190.0
 _TOP, _PANEL_WIDTH, _PANEL_HEIGHT = 26.0, 245.0, 128.0
-_LEGEND = 96.0
-_EMG_ROW, _EMG_HEIGHT = 118.0, 66.0
+_LEGEND = 150.0
 Range = tuple[float, float]
 
 
@@ -38,38 +38,26 @@ PANELS = (
 )
 
 
-def kinetics_figure(kinetics: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks]) -> str:
-    """Draw the mean of each side, with a band of one standard deviation where there are two cycles or more."""
-    panels = [
-        cycle_panel(p, averages(p.axes, kinetics.get(p.name, {})), mean_range(kinetics.get(p.name, {})), marks)
-        for p in PANELS
-    ]
-    lines = ("mean of the cycles with a valid plate contact, band: ± 1 standard deviation", *legend_lines(marks))
+def kinetics_figure(
+    kinetics: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks], norms: Norms = NO_NORMS
+) -> str:
+    """Draw the mean of each side, with a band of one standard deviation where there are two cycles or more.
+
+    `norms` may hold bands of these curves among others; they are drawn grey.
+    """
+    known = replace(norms, curves={p.name: norms.curves[p.name] for p in PANELS if p.name in norms.curves})
+    panels = [_kinetics_panel(p, kinetics.get(p.name, {}), marks, known) for p in PANELS]
+    absent = [p.title.lower() for p in PANELS if p.name not in known.curves] if known.curves else []
+    lines = (
+        "mean of the cycles with a valid plate contact, coloured band: ± 1 standard deviation; fixed scales",
+        *norm_legend(known),
+        *((f"no norms of: {', '.join(absent)}",) if absent else ()),
+        *legend_lines(marks),
+    )
     bottom = _TOP + 3 * _ROW
     height = bottom + _LEGEND
     return figure(_WIDTH, height, "".join(panels) + legend(66.0, bottom + 10.0, lines), "Kinetics over the gait cycle")
 
 
-def emg_figure(envelopes: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks]) -> str:
-    """Draw the mean envelope of each channel in percent of its own maximum, three in a row."""
-    panels = list[str]()
-    for index, (label, curves) in enumerate(envelopes.items()):
-        extent = mean_range(curves)
-        highest = extent[1] if extent is not None and extent[1] > 0.0 else 1.0
-        panel = _emg_panel(label, index, highest)
-        own = {side: mark for side, mark in marks.items() if side in curves}
-        scaled = {side: _scaled(curve, 100.0 / highest) for side, curve in curves.items()}
-        panels.append(cycle_panel(panel, averages(panel.axes, scaled), None, own))
-    height = _TOP + _EMG_ROW * ((len(envelopes) + 2) // 3)
-    return figure(_WIDTH, height, "".join(panels), "EMG envelopes over the gait cycle")
-
-
-def _scaled(curve: Curve, factor: float) -> Curve:
-    return Curve(mean=factor * curve.mean, sd=None if curve.sd is None else factor * curve.sd, n_cycles=curve.n_cycles)
-
-
-def _emg_panel(label: str, index: int, highest: float) -> CyclePanel:
-    row, column = divmod(index, 3)
-    left, top = 66.0 + column * _COLUMN, _TOP + row * _EMG_ROW
-    axes = Axes(left=left, top=top, width=_PANEL_WIDTH, height=_EMG_HEIGHT, x_range=(0.0, 100.0), y_range=(0.0, 125.0))
-    return CyclePanel(name=label, title=label, axes=axes, direction=f"% of {highest:.2g}")
+def _kinetics_panel(panel: CyclePanel, curves: Mapping[str, Curve], marks: Mapping[str, Marks], norms: Norms) -> str:
+    return cycle_panel(panel, norm_band(panel, norms) + averages(panel.axes, curves), mean_range(curves), marks)

@@ -21,7 +21,7 @@ def envelope(*spans, level=1.0, rest=0.05):
         (envelope((0, 12), (90, 101)), [(0.0, 12.0), (90.0, 100.0)]),
         (envelope((0, 3), (97, 101)), [(0.0, 3.0), (97.0, 100.0)]),  # 6 % over the end of the cycle
         (envelope((20, 40), rest=0.3), [(20.0, 40.0)]),  # above a resting level
-        (envelope((20, 40), rest=0.6), []),  # too flat to judge
+        (envelope((20, 40), rest=0.4), []),  # too flat to judge
         (np.zeros(101), []),
     ],
 )
