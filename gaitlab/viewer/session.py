@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import viser
 
 from ..errors import OutputError
@@ -77,6 +78,21 @@ class Session:
     def trials(self) -> tuple[str, ...]:
         """Names of the trials to choose from."""
         return tuple(self._motions)
+
+    @property
+    def trial(self) -> str:
+        """Name of the trial that is shown."""
+        return self._motion.name
+
+    @property
+    def time(self) -> float:
+        """Shown time [s from the first stored frame]."""
+        return self._playback.time
+
+    @property
+    def speed(self) -> float:
+        """Recorded seconds per second of the viewer's clock."""
+        return self._playback.speed
 
     @property
     def frame(self) -> int:
@@ -149,6 +165,16 @@ class Session:
             client.camera.look_at = camera.target
             client.camera.fov = FIELD_OF_VIEW
 
+    def recording(self) -> str:
+        """The trial that is shown as one HTML page that plays it and needs nothing else."""
+        serializer = self._server.get_scene_serializer()
+        with self._lock:
+            start, end = self._playback.start, self._playback.end
+            for moment in np.arange(start, end, 1.0 / FRAMES_PER_SECOND):
+                self.seek(float(moment))
+                serializer.insert_sleep(1.0 / FRAMES_PER_SECOND)
+        return serializer.as_html()
+
     def close(self) -> None:
         """Stop the playback and the server."""
         self._closed.set()
@@ -217,8 +243,12 @@ class Session:
             self.seek(moment)
 
     def _run(self) -> None:
-        before = time.perf_counter()
-        while not self._closed.wait(1.0 / FRAMES_PER_SECOND):
+        before = due = time.perf_counter()
+        while True:
+            # Due times are fixed: a pause after the work would make 30 updates per second 28.
+            due = max(due + 1.0 / FRAMES_PER_SECOND, before)
+            if self._closed.wait(max(due - time.perf_counter(), 0.0)):
+                return
             now = time.perf_counter()
             with self._lock:
                 if self._playback.playing:
