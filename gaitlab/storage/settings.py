@@ -48,6 +48,16 @@ class Settings(BaseSettings):
     oidc_client_id: str = ""
     oidc_client_secret: SecretStr | None = None
     oidc_default_role: str = "viewer"
+    oidc_name: str = "Single sign-on"
+    """Words on the button."""
+
+    viewers: int = Field(default=20, ge=1)
+    """3D sessions of all users together."""
+    viewers_per_user: int = Field(default=3, ge=1)
+    viewer_idle_minutes: float = Field(default=10.0, gt=0)
+    """Time after which a 3D session that nobody looks at is closed [min]."""
+    metrics_token: SecretStr | None = None
+    """Bearer token of /metrics; None: only askers on this machine get them."""
 
     worker: bool = True
     """Whether `gaitlab serve` starts a worker of its own."""
