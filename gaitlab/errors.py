@@ -14,6 +14,7 @@
   + Conflict            somebody else changed the object meanwhile, or it is used elsewhere
   + AccessDenied        the caller may not do this
     - NotSignedIn       nobody is signed in, or the credentials are wrong
+      . SecondFactorMissing  the password was right, the code of the authenticator is still to come
     - TooManyAttempts   too often in too short a time; carries when to try again
   + InvalidRequest      what a client sent cannot be used: too large, out of place, malformed
     - TooLarge          more bytes than the limit
@@ -85,6 +86,10 @@ class AccessDenied(GaitlabError):
 
 class NotSignedIn(AccessDenied):
     """Nobody is signed in, or the credentials are wrong."""
+
+
+class SecondFactorMissing(NotSignedIn):
+    """The password was right, the code of the authenticator is still to come."""
 
 
 class TooManyAttempts(AccessDenied):

@@ -77,6 +77,11 @@ class Settings(BaseSettings):
     """Port of a worker's metrics on the loopback address; 0: none."""
 
     @property
+    def secure_cookies(self) -> bool:
+        """Whether browsers reach the service by TLS, so that cookies may be kept to it."""
+        return self.public_url.startswith("https://") or self.tls_certificate is not None
+
+    @property
     def secrets_dir(self) -> Path:
         """Folder of what nobody else may read."""
         return self.data_dir / "secrets"
