@@ -12,10 +12,15 @@ from gaitlab.mocap.raw import save_raw
 def main(arguments: list[str]) -> None:
     """Sets the limits, parses the file, writes the result; whatever goes wrong ends the process."""
     source, target, memory, seconds = arguments
-    resource.setrlimit(resource.RLIMIT_AS, (int(memory), int(memory)))
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(float(seconds)), math.ceil(float(seconds)) + 1))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limit_process(int(memory), float(seconds))
     save_raw(Path(target), extract(Path(source)))
+
+
+def limit_process(memory: int, seconds: float) -> None:
+    """Bounds this process: address space [bytes], processor time [s], no core file."""
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds), math.ceil(seconds) + 1))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Runs the C3D parser in a process of its own, with limits, and turns each of its ends into one sentence.
+"""Runs the C3D library in a process of its own, with limits, and turns each of its ends into one sentence.
 
 The parser is native code and the files come from anywhere: it may crash, hang, or ask for all the memory there is.
 """
@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,18 +43,26 @@ def read_raw(path: Path, limits: ReaderLimits, child: str = CHILD) -> RawRecordi
     Raises:
         InvalidRecording: The file is no complete C3D file, or the parser refused it, crashed or broke a limit.
     """
-    check_file(path, limits.file_size)
     with tempfile.TemporaryDirectory(prefix="gaitlab-") as folder:
         result = Path(folder) / "raw.npz"
-        command = [sys.executable, "-P", "-m", child, str(path.resolve()), str(result)]
-        command += [str(limits.memory), str(limits.seconds)]
-        finished = _run(path, command, limits)
-        if finished.returncode != 0:
-            raise InvalidRecording(f"{path}: {_explain(finished, limits)}")
+        run_child(path, child, (result,), limits)
         try:
             return load_raw(result)
         except (OSError, ValueError, KeyError) as error:
             raise InvalidRecording(f"{path}: the C3D reader returned nothing usable; export the trial again") from error
+
+
+def run_child(path: Path, child: str, files: Sequence[Path], limits: ReaderLimits) -> None:
+    """Let the module `child` work on the C3D file `path`, with more `files` as its arguments, within the limits.
+
+    Raises:
+        InvalidRecording: As for `read_raw`.
+    """
+    check_file(path, limits.file_size)
+    command = [sys.executable, "-P", "-m", child, str(path.resolve()), *(str(file.resolve()) for file in files)]
+    finished = _run(path, [*command, str(limits.memory), str(limits.seconds)], limits)
+    if finished.returncode != 0:
+        raise InvalidRecording(f"{path}: {_explain(finished, limits)}")
 
 
 def _run(path: Path, command: list[str], limits: ReaderLimits) -> "subprocess.CompletedProcess[bytes]":
