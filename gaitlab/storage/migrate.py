@@ -32,11 +32,12 @@ def present_revision(database: Database) -> str:
         return MigrationContext.configure(connection).get_current_revision() or ""
 
 
-def migrate(database: Database) -> bool:
+def migrate(database: Database, revision: str = "head") -> bool:
     """Run the missing steps in one transaction; returns whether there were any.
 
     Args:
         database: The database; several processes may call this at the same time.
+        revision: The form to stop at.
 
     Raises:
         StorageError: The database was made by a newer gaitlab.
@@ -54,5 +55,5 @@ def migrate(database: Database) -> bool:
                 f"{newest_revision()}): install the gaitlab that made it, or a newer one"
             )
         config.attributes["connection"] = connection
-        command.upgrade(config, "head")
+        command.upgrade(config, revision)
     return True

@@ -68,6 +68,8 @@ class Job(Identified, Row):
     """Fencing number: grows with every start; only the newest attempt may write."""
     losses: Mapped[int] = mapped_column(default=0)
     """How often its process or its worker died."""
+    heartbeat_at: Mapped[datetime | None] = mapped_column(default=None)
+    """Last sign of life of the running attempt."""
     queue_job_id: Mapped[int | None] = mapped_column(BigInteger, default=None, index=True)
     """Its row in procrastinate's queue."""
     worker: Mapped[str] = mapped_column(default="")

@@ -245,6 +245,7 @@ CREATE TABLE jobs (
     priority INTEGER NOT NULL,
     attempt INTEGER NOT NULL,
     losses INTEGER NOT NULL,
+    heartbeat_at TIMESTAMP WITH TIME ZONE,
     queue_job_id BIGINT,
     worker VARCHAR NOT NULL,
     cancel_requested BOOLEAN NOT NULL,

@@ -1,0 +1,52 @@
+"""The log of who did what to whose data."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy.orm import Session
+
+from .models import AuditEntry
+
+
+@dataclass(frozen=True, kw_only=True)
+class Actor:
+    """Who acts: a signed-in user, or the installation itself."""
+
+    user_id: UUID | None = None
+    login: str = ""
+    request_id: str = ""
+    address: str = ""
+
+
+SYSTEM = Actor(login="gaitlab")
+"""Retention, backups, commands on the machine."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deed:
+    """What was done. `detail` holds no names: the log outlives the patient."""
+
+    action: str
+    kind: str
+    object_id: str = ""
+    patient_id: UUID | None = None
+    detail: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+
+def record(session: Session, actor: Actor, deed: Deed) -> None:
+    """Add a line to the log, in the transaction of the deed itself."""
+    session.add(
+        AuditEntry(
+            action=deed.action,
+            kind=deed.kind,
+            object_id=deed.object_id,
+            patient_id=deed.patient_id,
+            detail=dict(deed.detail),
+            user_id=actor.user_id,
+            login=actor.login,
+            request_id=actor.request_id,
+            address=actor.address,
+        )
+    )

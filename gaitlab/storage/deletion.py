@@ -1,0 +1,148 @@
+"""Deleting: rows in the order of their references, then the contents that nobody uses any more."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from uuid import UUID
+
+from sqlalchemy import CompoundSelect, delete, select, text, union
+from sqlalchemy.orm import Session
+
+from ..errors import NotFound
+from .audit import Actor, Deed, record
+from .database import Database
+from .files import FileStore
+from .models import (
+    Attachment,
+    CohortMember,
+    GaitSession,
+    Job,
+    JobPatient,
+    Patient,
+    PatientIdentity,
+    PatientShare,
+    Recording,
+    ReportSignature,
+    ReportVersion,
+    Result,
+    ResultFile,
+    Subject,
+    Upload,
+    UploadChunk,
+)
+from .references import remove_unused
+
+READS = text("EXISTS (SELECT 1 FROM jsonb_array_elements(jobs.inputs) AS part WHERE part->>'source' = ANY(:sources))")
+"""Whether a job's inputs hold one of these recordings or results."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deleted:
+    """What went with a patient or a visit."""
+
+    sessions: int
+    recordings: int
+    jobs: int
+    digests: tuple[str, ...]
+    """Contents that were referred to; others may still use some of them."""
+
+
+def delete_patient(database: Database, store: FileStore, patient_id: UUID, actor: Actor) -> Deleted:
+    """Delete a patient with everything computed from their data, comparisons and norms of several people included.
+
+    A computation that runs ends by itself: its job's row is gone. One line of the audit log stays.
+
+    Raises:
+        NotFound: There is no such patient.
+    """
+    with database.transaction() as session:
+        if session.get(Patient, patient_id, with_for_update=True) is None:
+            raise NotFound("patient", str(patient_id), ())
+        sessions = list(session.scalars(select(GaitSession.id).where(GaitSession.patient_id == patient_id)))
+        jobs = session.scalars(select(JobPatient.job_id).where(JobPatient.patient_id == patient_id))
+        deleted = _delete_sessions(session, sessions, jobs)
+        for statement in (
+            delete(PatientShare).where(PatientShare.patient_id == patient_id),
+            delete(PatientIdentity).where(PatientIdentity.patient_id == patient_id),
+            delete(Patient).where(Patient.id == patient_id),
+        ):
+            session.execute(statement)
+        record(session, actor, _deed("patients", str(patient_id), patient_id, deleted))
+    remove_unused(database, store, deleted.digests)
+    return deleted
+
+
+def delete_session(database: Database, store: FileStore, session_id: UUID, actor: Actor) -> Deleted:
+    """Delete a visit with everything computed from it.
+
+    Raises:
+        NotFound: There is no such visit.
+    """
+    with database.transaction() as session:
+        visit = session.get(GaitSession, session_id, with_for_update=True)
+        if visit is None:
+            raise NotFound("session", str(session_id), ())
+        deleted = _delete_sessions(session, [session_id], ())
+        record(session, actor, _deed("sessions", str(session_id), visit.patient_id, deleted))
+    remove_unused(database, store, deleted.digests)
+    return deleted
+
+
+def _deed(kind: str, object_id: str, patient_id: UUID, deleted: Deleted) -> Deed:
+    detail = {"sessions": deleted.sessions, "recordings": deleted.recordings, "jobs": deleted.jobs}
+    return Deed(action="delete", kind=kind, object_id=object_id, patient_id=patient_id, detail=detail)
+
+
+def _delete_sessions(session: Session, sessions: Sequence[UUID], more_jobs: Iterable[UUID]) -> Deleted:
+    recordings = list(session.scalars(select(Recording.id).where(Recording.session_id.in_(sessions))))
+    uploads = select(Upload.id).where(Upload.session_id.in_(sessions))
+    jobs = {*more_jobs, *session.scalars(select(Job.id).where(Job.session_id.in_(sessions)))}
+    jobs |= _jobs_that_read(session, sessions, recordings)
+    digests = tuple(row[0] for row in session.execute(_contents(sessions, list(jobs))))
+    results = select(Result.id).where(Result.job_id.in_(jobs))
+    reports = select(ReportVersion.id).where(
+        ReportVersion.session_id.in_(sessions) | ReportVersion.result_id.in_(results)
+    )
+    for statement in (
+        delete(ReportSignature).where(ReportSignature.report_id.in_(reports)),
+        delete(ReportVersion).where(ReportVersion.id.in_(reports)),
+        delete(CohortMember).where(CohortMember.result_id.in_(results)),
+        delete(ResultFile).where(ResultFile.result_id.in_(results)),
+        delete(Result).where(Result.job_id.in_(jobs)),
+        delete(JobPatient).where(JobPatient.job_id.in_(jobs)),
+        delete(Job).where(Job.id.in_(jobs)),
+        delete(UploadChunk).where(UploadChunk.upload_id.in_(uploads)),
+        delete(Upload).where(Upload.session_id.in_(sessions)),
+        delete(Attachment).where(Attachment.session_id.in_(sessions)),
+        delete(Subject).where(Subject.session_id.in_(sessions)),
+        delete(Recording).where(Recording.session_id.in_(sessions)),
+        delete(GaitSession).where(GaitSession.id.in_(sessions)),
+    ):
+        session.execute(statement.execution_options(synchronize_session=False))
+    return Deleted(sessions=len(sessions), recordings=len(recordings), jobs=len(jobs), digests=digests)
+
+
+def _jobs_that_read(session: Session, sessions: Sequence[UUID], recordings: Sequence[UUID]) -> set[UUID]:
+    """Jobs of other visits whose inputs are recordings or results of these visits, and the jobs that read theirs."""
+    sources = {str(each) for each in recordings}
+    sources |= {str(each) for each in session.scalars(select(Result.id).where(Result.session_id.in_(sessions)))}
+    found: set[UUID] = set()
+    while sources:
+        fresh = {*session.scalars(select(Job.id).where(READS.bindparams(sources=[*sources])))} - found
+        found |= fresh
+        sources = {str(each) for each in session.scalars(select(Result.id).where(Result.job_id.in_(fresh)))}
+    return found
+
+
+def _contents(sessions: Sequence[UUID], jobs: Sequence[UUID]) -> CompoundSelect[tuple[str]]:
+    results = select(Result.id).where(Result.job_id.in_(jobs))
+    uploads = select(Upload.id).where(Upload.session_id.in_(sessions))
+    reports = ReportVersion.session_id.in_(sessions)
+    return union(
+        select(Recording.sha256).where(Recording.session_id.in_(sessions)),
+        select(Attachment.sha256).where(Attachment.session_id.in_(sessions)),
+        select(UploadChunk.sha256).where(UploadChunk.upload_id.in_(uploads)),
+        select(Subject.model_sha256).where(Subject.session_id.in_(sessions), Subject.model_sha256.is_not(None)),
+        select(ResultFile.sha256).where(ResultFile.result_id.in_(results)),
+        select(ReportVersion.html_sha256).where(reports, ReportVersion.html_sha256.is_not(None)),
+        select(ReportVersion.pdf_sha256).where(reports, ReportVersion.pdf_sha256.is_not(None)),
+    )
