@@ -12,7 +12,8 @@ from ..pipelines.analyse import Sources, analyse_files
 from ..pipelines.options import AnalysisOptions
 from ..pipelines.output import make_folder, write_analysis
 from ..pipelines.references import BUNDLED, ReferenceOptions
-from ..report.html import write_report
+from ..report.files import write_preview
+from ..report.ledger import refuse_signed
 from ..walking.criteria import THESIS
 from .progress import progress_bars
 from .summary import print_summary
@@ -73,11 +74,12 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
 def run_analysis(sources: Sources, options: AnalysisOptions, out: Path) -> None:
     """Analyse, write, report and print; raises NotConverged after writing when something did not converge."""
     make_folder(out)
+    refuse_signed(out)
     with progress_bars() as progress:
         analysis = analyse_files(sources, options, progress)
         folders = write_analysis(analysis, out)
         for folder in folders:
-            write_report(folder)
+            write_preview(folder)
     print_summary(analysis.document, out)
     if analysis.not_converged:
         raise NotConverged(f"{analysis.not_converged}; the results so far are in {out}")

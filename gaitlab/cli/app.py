@@ -18,6 +18,7 @@ from .demo import demo
 from .demo_data import demo_data
 from .inspect import inspect
 from .norms import norms
+from .report import report
 from .schema import schema
 from .view import view
 
@@ -38,6 +39,7 @@ app.command(name="demo-data")(demo_data)
 app.command(name="compare")(compare_results)
 app.add_typer(benchmark)
 app.add_typer(norms)
+app.add_typer(report)
 
 
 @app.callback(invoke_without_command=True)

@@ -7,9 +7,10 @@ import numpy as np
 from ..clinical.cycle_average import time_normalise
 from ..clinical.document import CURVES, SIDES
 from ..mocap.cycles import cycles
+from .blocks import Block, Section, Table, facts, missing, paragraph, picture, section, table
 from .cycle_panels import Marks
+from .formatting import ABSENT, fixed, label, plain, unit_of
 from .kinematics_figure import average_figure, consistency_figure
-from .markup import ABSENT, facts, fixed, label, missing, paragraph, plain, table, tag, unit_of
 from .result import Result, first_real, mapping, real, sequence
 from .score_sections import norms_of
 from .walk_file import Angles
@@ -21,34 +22,34 @@ _CONVENTIONS = (
 )
 
 
-def subject_section(result: Result) -> str:
+def subject_section(result: Result) -> Section:
     """Subject and input files with their fingerprints."""
     members = result.part("subject")
     known = {key: value for key, value in members.items() if key not in {"segments", "assumed", "parameters"}}
     subject = facts(known, "Subject") if known else missing("subject", "result.json says nothing about it")
     assumed = ", ".join(str(name) for name in sequence(members.get("assumed")))
-    estimated = paragraph(f"Estimated, neither measured nor given: {assumed}.", "alert") if assumed else ""
-    return tag("section", tag("h2", "Subject and inputs") + subject + estimated + _inputs(result))
+    estimated = paragraph(f"Estimated, neither measured nor given: {assumed}.", "alert") if assumed else None
+    return section("Subject and inputs", subject, estimated, _inputs(result))
 
 
-def body_section(result: Result) -> str:
+def body_section(result: Result) -> Section:
     """Body parameters and the segments of the model."""
     members = result.part("subject")
-    tables = _parameters(members) + _segments(members)
-    return tag("section", tag("h2", "Body") + (tables or missing("body parameters", "result.json holds none")))
+    tables = [found for found in (_parameters(members), _segments(members)) if found is not None]
+    return section("Body", *(tables or [missing("body parameters", "result.json holds none")]))
 
 
-def _parameters(subject: Mapping[str, object]) -> str:
+def _parameters(subject: Mapping[str, object]) -> Table | None:
     """Body parameters, left beside right; mass and height stand above."""
     values = {key: value for key, value in mapping(subject.get("parameters")).items() if key not in {"mass", "height"}}
     sided = {key.removeprefix(f"{side}_") for key in values for side in SIDES if key.startswith(f"{side}_")}
     rows = [(label(name), *(plain(values.get(f"{side}_{name}")) for side in SIDES), "") for name in sorted(sided)]
     rows += [(label(name), "", "", plain(values[name])) for name in sorted(values) if name.split("_")[0] not in SIDES]
     caption = "Body parameters (lengths in m, angles in rad)"
-    return table(("", "left", "right", "body"), rows, caption, "sides") if rows else ""
+    return table(("", "left", "right", "body"), rows, caption, "sides") if rows else None
 
 
-def _segments(subject: Mapping[str, object]) -> str:
+def _segments(subject: Mapping[str, object]) -> Table | None:
     segments = [mapping(item) for item in sequence(subject.get("segments"))]
     rows = [
         (
@@ -58,10 +59,10 @@ def _segments(subject: Mapping[str, object]) -> str:
         )
         for s in segments
     ]
-    return table(("segment", "mass [kg]", "length [m]"), rows, "Segments of the model") if rows else ""
+    return table(("segment", "mass [kg]", "length [m]"), rows, "Segments of the model") if rows else None
 
 
-def _inputs(result: Result) -> str:
+def _inputs(result: Result) -> Block:
     files = [mapping(item) for item in result.parts("inputs")]
     if not files:
         return missing("input files", "result.json lists none")
@@ -92,22 +93,21 @@ def _marks(side: Mapping[str, object]) -> Marks:
     )
 
 
-def kinematics_section(result: Result) -> str:
+def kinematics_section(result: Result) -> Section:
     """Average page: mean and standard deviation of each curve over the cycles."""
-    title = tag("h2", "Kinematics")
     if not any(result.kinematics.get(name) for name in CURVES):
         why = "no side has a complete cycle with all markers" if result.kinematics else "result.json holds none"
-        return tag("section", title + missing("joint angles over the gait cycle", why))
+        return section("Kinematics", missing("joint angles over the gait cycle", why))
     absent = [
         f"{name.replace('_', ' ')} ({side})"
         for name in CURVES
         for side in SIDES
         if side not in result.kinematics.get(name, {})
     ]
-    gap = missing(", ".join(absent), "result.json has no complete cycle of them") if absent else ""
+    gap = missing(", ".join(absent), "result.json has no complete cycle of them") if absent else None
     average = average_figure(result.kinematics, marks_of(result), norms_of(result))
-    body = paragraph(_cycles_used(result), "lead") + average + paragraph(_CONVENTIONS, "note") + gap
-    return tag("section", title + body, "page")
+    lead = paragraph(_cycles_used(result), "lead")
+    return section("Kinematics", lead, picture(average), paragraph(_CONVENTIONS, "note"), gap)
 
 
 def _cycles_used(result: Result) -> str:
@@ -122,12 +122,11 @@ def _cycles_used(result: Result) -> str:
     return f"Number of cycles: {', '.join(parts)}." if parts else "Number of cycles: not stated."
 
 
-def consistency_section(result: Result, trials: Sequence[tuple[Result, Angles | None]], why: str) -> str:
+def consistency_section(result: Result, trials: Sequence[tuple[Result, Angles | None]], why: str) -> Section:
     """Every cycle of every trial; `why` explains trials without angles per frame."""
-    title = tag("h2", "All cycles")
     known = [every_cycle(trial, angles) for trial, angles in trials if angles is not None]
     if not known:
-        return tag("section", title + missing("every cycle", why or "angles.csv is absent"))
+        return section("All cycles", missing("every cycle", why or "angles.csv is absent"))
     curves = {
         name: {side: [c for found in known for c in found.get(name, {}).get(side, [])] for side in SIDES}
         for name in CURVES
@@ -135,8 +134,8 @@ def consistency_section(result: Result, trials: Sequence[tuple[Result, Angles | 
     count = max(len(values) for sides in curves.values() for values in sides.values())
     if count < 2:
         reason = "no side has two complete cycles, so the average says it all"
-        return tag("section", title + missing("every cycle", reason))
-    return tag("section", title + consistency_figure(curves, marks_of(result), norms_of(result)), "page")
+        return section("All cycles", missing("every cycle", reason))
+    return section("All cycles", picture(consistency_figure(curves, marks_of(result), norms_of(result))))
 
 
 def every_cycle(result: Result, angles: Angles) -> dict[str, dict[str, list[np.ndarray]]]:
@@ -157,38 +156,43 @@ def every_cycle(result: Result, angles: Angles) -> dict[str, dict[str, list[np.n
     return curves
 
 
-def spatiotemporal_section(result: Result) -> str:
+def spatiotemporal_section(result: Result) -> Section:
     """Table of distances and times, left and right, with standard deviations where there are two cycles or more."""
-    title = tag("h2", "Spatiotemporal parameters")
+    title = "Spatiotemporal parameters"
+    cells = spatiotemporal_cells(result)
+    if not cells:
+        return section(title, missing("spatiotemporal parameters", "no side has a complete cycle"))
+    reference = mapping(mapping(result.part("scores").get("reference")).get("spatiotemporal"))
+    sides = {side: mapping(result.part("spatiotemporal").get(side)) for side in SIDES}
+    columns = 3 if reference else 2
+    rows = [(label(key), *values[:columns]) for key, values in cells.items()]
+    counts = [plain(sides[side].get("n_cycles")) for side in SIDES]
+    rows.append(("Cycles", *(*counts, "")[:columns]))
+    words = f"Reference: {norms_of(result).description}; distances for this person's leg length."
+    norm = paragraph(words if reference else "No normative column: no reference cohort applies.", "note")
+    header = ("", "left", "right", "reference")[: columns + 1]
+    return section(title, table(header, rows, kind="sides"), norm, _dimensionless(sides))
+
+
+def spatiotemporal_cells(result: Result) -> dict[str, tuple[str, str, str]]:
+    """Left, right and reference of each distance and time, as printed."""
     sides = {side: mapping(result.part("spatiotemporal").get(side)) for side in SIDES}
     means = {side: mapping(values.get("mean")) or values for side, values in sides.items()}
     keys = list(dict.fromkeys(key for values in means.values() for key in values if real(values[key]) is not None))
-    keys = [key for key in keys if key != "n_cycles"]
-    if not keys:
-        return tag("section", title + missing("spatiotemporal parameters", "no side has a complete cycle"))
     reference = mapping(mapping(result.part("scores").get("reference")).get("spatiotemporal"))
-    rows = [
-        (
-            label(key),
-            *(_with_sd(key, means[side], mapping(sides[side].get("sd"))) for side in SIDES),
-            *([_reference(key, mapping(reference.get(key)))] if reference else []),
-        )
-        for key in keys
-    ]
-    counts = [plain(sides[side].get("n_cycles")) for side in SIDES]
-    rows.append(("Cycles", *counts, *([""] if reference else [])))
-    words = f"Reference: {norms_of(result).description}; distances for this person's leg length."
-    norm = paragraph(words if reference else "No normative column: no reference cohort applies.", "note")
-    header = ("", "left", "right", *(["reference"] if reference else []))
-    return tag("section", title + table(header, rows, kind="sides") + norm + _dimensionless(sides))
+    found = dict[str, tuple[str, str, str]]()
+    for key in (key for key in keys if key != "n_cycles"):
+        left, right = (_with_sd(key, means[side], mapping(sides[side].get("sd"))) for side in SIDES)
+        found[key] = (left, right, _reference(key, mapping(reference.get(key))))
+    return found
 
 
-def _dimensionless(sides: Mapping[str, Mapping[str, object]]) -> str:
+def _dimensionless(sides: Mapping[str, Mapping[str, object]]) -> Table | None:
     values = {side: mapping(members.get("normalised")) for side, members in sides.items()}
     keys = list(dict.fromkeys(key for found in values.values() for key in found if real(found[key]) is not None))
     rows = [(label(key), *(fixed(real(values[side].get(key)), 3) for side in SIDES)) for key in keys]
     caption = "Dimensionless with leg length l: v / sqrt(g l), f / sqrt(g / l), x / l, t / sqrt(l / g)"
-    return table(("", "left", "right"), rows, caption, "sides") if rows else ""
+    return table(("", "left", "right"), rows, caption, "sides") if rows else None
 
 
 def _reference(key: str, value: Mapping[str, object]) -> str:
@@ -203,14 +207,13 @@ def _with_sd(key: str, means: Mapping[str, object], deviations: Mapping[str, obj
     return fixed(value, decimals) + (f" ± {fixed(sd, decimals)}" if sd is not None else "")
 
 
-def events_section(result: Result) -> str:
+def events_section(result: Result) -> Section:
     """Table of the gait events and where they come from."""
-    title = tag("h2", "Gait events")
     if not result.events:
-        return tag("section", title + missing("gait events", "result.json lists none"))
+        return section("Gait events", missing("gait events", "result.json lists none"))
     rows = [
         (f"{e.time:.3f}", e.side, e.kind.replace("_", " "), e.source)
         for e in sorted(result.events, key=lambda e: e.time)
     ]
     header = ("time [s]", "side", "event", "source")
-    return tag("section", title + table(header, rows, "Times from the first stored frame"))
+    return section("Gait events", table(header, rows, "Times from the first stored frame"))

@@ -9,10 +9,24 @@ from ..clinical.comparison import Band, Comparison, Member, group_bands, quantit
 from ..clinical.document import SIDES
 from ..clinical.gait_profile import GPS_MINIMAL_DIFFERENCE
 from .colours import CENTRE, SIDE
+from .formatting import label
 from .kinematics_figure import NO_NORMS, PANELS, PERCENT, Norms, Panel, norm_band
-from .markup import label
 from .result import Curve
-from .svg import Axes, area, clipped, curve, element, figure, frame, number, rectangle, straight, text, ticks
+from .svg import (
+    Axes,
+    area,
+    clipped,
+    curve,
+    element,
+    figure,
+    frame,
+    number,
+    rectangle,
+    standalone,
+    straight,
+    text,
+    ticks,
+)
 from .weights_series import WeightSeries, weight_series
 from .wording import spoken
 
@@ -21,12 +35,6 @@ DASHES = ("none", "7 4", "2 3", "9 3 2 3", "12 3", "1 4")
 MOST_LABELS = 12
 """More results than these are not labelled on an axis; the tables name them."""
 _WIDTH = 1000.0
-_STYLE = (
-    "text{font-family:system-ui,'DejaVu Sans',Arial,sans-serif;font-size:12px;fill:#1c232b}"
-    ".title{font-size:13px;font-weight:600}.heading{font-size:14px;font-weight:600;fill:#5b6672}"
-    ".tick,.direction{font-size:11px;fill:#5b6672}.note{fill:#5b6672}.panel{fill:none;stroke:#9aa4ae}"
-    ".axis{stroke:#9aa4ae}.grid{stroke:#e3e7eb}.zero{stroke:#8a949e}"
-)
 SCALES: Mapping[str, tuple[float, float]] = {
     "speed_m_per_s": (0.0, 2.0),
     "cadence_steps_per_min": (0.0, 200.0),
@@ -269,5 +277,4 @@ def _short(words: str, most: int) -> str:
 
 def _standalone(height: float, content: str, title: str) -> str:
     background = rectangle(0.0, 0.0, _WIDTH, height, fill="#fff")
-    markup = figure(_WIDTH, height, f"<style>{_STYLE}</style>{background}{content}", title)
-    return markup.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"', 1)
+    return standalone(figure(_WIDTH, height, background + content, title))

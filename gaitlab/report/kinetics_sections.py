@@ -1,10 +1,13 @@
 """Sections on forces: kinetics page, plate contacts, EMG."""
 
 from ..clinical.document import SIDES
+from .blocks import Section, bullets, missing, paragraph, picture, section, table
 from .clinical_sections import marks_of
-from .kinetics_figure import PANELS, emg_figure, kinetics_figure
-from .markup import ABSENT, bullets, fixed, missing, paragraph, table, tag
+from .emg_figure import activity_of, emg_figure
+from .formatting import ABSENT, fixed
+from .kinetics_figure import PANELS, kinetics_figure
 from .result import Result, mapping, real, sequence
+from .score_sections import norms_of
 
 _CONVENTIONS = (
     "Conventions: moments are internal, per body mass, positive towards the muscles named second on the axis (an "
@@ -13,15 +16,14 @@ _CONVENTIONS = (
 )
 
 
-def kinetics_section(result: Result) -> str:
+def kinetics_sections(result: Result) -> tuple[Section, ...]:
     """Average moments, powers and ground reactions, the plate contacts, and what is missing and why."""
-    title = tag("h2", "Kinetics")
     part = result.part("kinetics")
     reasons = [str(sentence) for sentence in sequence(part.get("missing"))]
     contacts = _contacts(part.get("contacts"))
     if not any(result.kinetics.get(panel.name) for panel in PANELS):
         why = "; ".join(reasons) or "result.json holds none"
-        return tag("section", title + missing("moments, powers and ground reactions", why) + contacts)
+        return (section("Kinetics", missing("moments, powers and ground reactions", why)), *contacts)
     counts = {
         side: max((c[side].n_cycles or 0 for c in result.kinetics.values() if side in c), default=0) for side in SIDES
     }
@@ -30,19 +32,20 @@ def kinetics_section(result: Result) -> str:
     )
     axes = part.get("moments_in") or "axes that are not stated"
     words = f"{_CONVENTIONS} Moments are expressed in {axes}; inertia of {part.get('inertia') or 'unknown source'}."
-    body = (
-        paragraph(lead, "lead")
-        + kinetics_figure(result.kinetics, marks_of(result))
-        + paragraph(words, "note")
-        + (bullets(reasons, "missing") if reasons else "")
+    page = section(
+        "Kinetics",
+        paragraph(lead, "lead"),
+        picture(kinetics_figure(result.kinetics, marks_of(result), norms_of(result))),
+        paragraph(words, "note"),
+        bullets(reasons, "missing") if reasons else None,
     )
-    return tag("section", title + body, "page") + tag("section", contacts)
+    return (page, *contacts)
 
 
-def _contacts(value: object) -> str:
+def _contacts(value: object) -> tuple[Section, ...]:
     found = [mapping(item) for item in sequence(value)]
     if not found:
-        return ""
+        return ()
     rows = [
         (
             str(contact.get("trial") or "unnamed"),
@@ -53,19 +56,22 @@ def _contacts(value: object) -> str:
         )
         for contact in found
     ]
-    return table(("trial", "plate", "time [s]", "foot", ""), rows, "Contacts with the force plates")
+    header = ("trial", "plate", "time [s]", "foot", "")
+    return (section("Contacts with the force plates", table(header, rows, kind="text")),)
 
 
-def emg_section(result: Result) -> str:
-    """Mean envelopes of all channels; nothing where the files hold no EMG."""
+def emg_sections(result: Result) -> tuple[Section, ...]:
+    """Mean envelopes of all channels, or why there are none."""
     part = result.part("emg")
     if not result.emg:
-        return ""
+        why = "the files hold no EMG" if "emg" in result.document else "result.json holds none"
+        return (section("EMG", missing("muscle activity", why)),)
     words = (
         f"Linear envelopes ({part.get('filter') or 'filter not stated'}); each in percent of its own maximum, "
         "which the axis gives in the unit of the file, so heights cannot be compared between muscles or sessions. "
         "A channel whose label names no side is drawn over the cycles of both."
     )
-    return tag(
-        "section", tag("h2", "EMG") + emg_figure(result.emg, marks_of(result)) + paragraph(words, "note"), "page"
-    )
+    activity = activity_of(result)
+    rule = paragraph(f"Activity {activity.rule}.", "note") if activity.rule else None
+    drawn = emg_figure(result.emg, marks_of(result), activity, norms_of(result))
+    return (section("EMG", picture(drawn), paragraph(words, "note"), rule),)

@@ -1,37 +1,37 @@
 """Sections of trust: warnings, quality of the data, provenance."""
 
-from .markup import bullets, facts, fixed, missing, paragraph, rows_of, table, tag
+from .blocks import Block, Section, bullets, facts, missing, paragraph, section, table
+from .formatting import fixed
 from .result import Result, mapping, real, sequence
 
 
-def warnings_box(results: list[tuple[str, Result]]) -> str:
+def warnings_section(results: list[tuple[str, Result]]) -> Section:
     """All warnings of the overall document and of its trials, once each, before anything else."""
     seen = dict[str, str]()
     for name, result in results:
         for warning in result.warnings:
             seen.setdefault(warning, name)
     if not seen:
-        return paragraph("No warnings.", "calm")
+        return section("Warnings", paragraph("No warnings.", "calm"))
     several = len({name for name, _ in results}) > 1
     items = [
         f"{name}: {words}" if several and name and not words.startswith(name) else words for words, name in seen.items()
     ]
     count = f"{len(items)} warning{'s' if len(items) > 1 else ''}"
-    return tag("section", tag("h2", count) + bullets(items), "warnings", "warnings")
+    return section(count, bullets(items), kind="warnings")
 
 
-def quality_section(result: Result) -> str:
+def quality_sections(result: Result) -> tuple[Section, ...]:
     """Gaps, calibration, residuals, and whatever else the document says about quality."""
     quality = dict(result.part("quality"))
-    title = tag("h2", "Quality")
     if not quality:
-        return tag("section", title + missing("quality of the data", "result.json says nothing about it"))
-    parts = [_gaps(quality.pop("gaps", None)), _calibration(quality.pop("calibration", None)), _residuals(quality)]
+        return (section("Quality", missing("quality of the data", "result.json says nothing about it")),)
+    parts = [_gaps(quality.pop("gaps", None)), *_calibration(quality.pop("calibration", None)), *_residuals(quality)]
     rest = {key: value for key, value in quality.items() if value not in (None, {}, [])}
-    return tag("section", title + "".join(parts) + (facts(rest, "Other") if rest else ""))
+    return (section("Quality", *parts, facts(rest, "Other") if rest else None),)
 
 
-def _gaps(value: object) -> str:
+def _gaps(value: object) -> Block:
     gaps = [mapping(item) for item in sequence(value)]
     if not gaps:
         return paragraph("Gaps in the markers: none.")
@@ -48,35 +48,29 @@ def _gaps(value: object) -> str:
     return table(("marker", "trial", "from [s]", "to [s]", "what was done"), rows, "Gaps in the markers")
 
 
-def _calibration(value: object) -> str:
+def _calibration(value: object) -> list[Block]:
     members = mapping(value)
     if not members:
-        return missing("calibration", "result.json says nothing about it")
+        return [missing("calibration", "result.json says nothing about it")]
     computed, stored = mapping(members.get("computed")), mapping(members.get("stored"))
     names = list(dict.fromkeys((*computed, *stored)))
     rows = [(n.replace("_", " "), fixed(real(computed.get(n)), 4), fixed(real(stored.get(n)), 4)) for n in names]
     used = paragraph(f"Calibration used: {members.get('used') or 'not stated'}.")
     header = ("static offset [rad]", "computed from the static trial", "stored in the file")
-    return used + (table(header, rows, "Static offsets") if rows else "")
+    return [used, *([table(header, rows, "Static offsets")] if rows else [])]
 
 
-def _residuals(quality: dict[str, object]) -> str:
+def _residuals(quality: dict[str, object]) -> list[Block]:
     rms = real(quality.pop("marker_residual_rms_m", None))
     each = mapping(quality.pop("marker_residuals_m", None))
     if rms is None and not each:
-        return missing("marker residuals", "no whole-model kinematics in result.json")
+        return [missing("marker residuals", "no whole-model kinematics in result.json")]
     total = paragraph(f"Whole-model kinematics, marker residual: {_millimetres(rms)} mm rms over all markers.")
     worst = sorted(each.items(), key=lambda item: -(real(item[1]) or 0.0))
     rows = [(name, _millimetres(real(value))) for name, value in worst]
-    return total + (table(("marker", "rms [mm]"), rows, "Residual per marker, largest first", "narrow") if rows else "")
+    header = ("marker", "rms [mm]")
+    return [total, *([table(header, rows, "Residual per marker, largest first")] if rows else [])]
 
 
 def _millimetres(value: float | None) -> str:
     return fixed(None if value is None else 1000.0 * value, 1)
-
-
-def provenance_section(result: Result) -> str:
-    """Version and every setting that shaped the result."""
-    version = str(result.document.get("version") or "not stated")
-    rows = [("gaitlab version", version), *rows_of(result.part("settings") or {"settings": None})]
-    return tag("section", tag("h2", "Provenance") + table(("", "value"), rows, kind="facts"))

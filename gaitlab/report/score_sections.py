@@ -4,37 +4,40 @@ from collections.abc import Mapping
 
 from ..clinical.document import CURVES, SIDES
 from ..clinical.gait_profile import GPS_MINIMAL_DIFFERENCE, VARIABLES
+from .blocks import Block, Section, Table, bullets, missing, paragraph, picture, section, table
+from .formatting import ABSENT, fixed
 from .kinematics_figure import NO_NORMS, Norms
-from .markup import ABSENT, bullets, fixed, missing, paragraph, table, tag
 from .profile_figure import profile_figure
 from .result import Result, curve_of, mapping, real, sequence
 
 
 def norms_of(result: Result) -> Norms:
-    """The reference cohort that the document was compared with."""
+    """The reference cohort that the document was compared with: angles, kinetics and EMG by their names."""
     reference = mapping(result.part("scores").get("reference"))
     if not reference:
         return NO_NORMS
-    curves = {name: curve for name, value in mapping(reference.get("curves")).items() if (curve := curve_of(value))}
+    bands = {
+        name: value for key in ("curves", "kinetics", "emg") for name, value in mapping(reference.get(key)).items()
+    }
+    curves = {name: curve for name, value in bands.items() if (curve := curve_of(value))}
     return Norms(description=str(reference.get("description") or "source not stated"), curves=curves)
 
 
-def scores_section(result: Result) -> str:
+def scores_sections(result: Result) -> tuple[Section, ...]:
     """Movement analysis profile, gait profile score, gait deviation index, and what is missing."""
-    title = tag("h2", "Scores")
     scores = result.part("scores")
     if not scores:
-        return tag("section", title + missing("scores", "result.json holds none"))
+        return (section("Scores", missing("scores", "result.json holds none")),)
     absent = [str(sentence) for sentence in sequence(scores.get("missing"))]
-    notes = bullets(absent, "missing") if absent else ""
+    notes = bullets(absent, "missing") if absent else None
     sides = {side: mapping(scores.get(side)) for side in SIDES}
     if not any(sides.values()):
-        return tag("section", title + missing("scores", "nothing to compare with") + notes)
+        return (section("Scores", missing("scores", "nothing to compare with"), notes),)
     reference = mapping(scores.get("reference"))
     profiles = {side: _numbers(mapping(values.get("gvs"))) for side, values in sides.items()}
     totals = {side: real(values.get("gps")) for side, values in sides.items()}
     overall = real(scores.get("gps_overall"))
-    picture = profile_figure(profiles, {**totals, "overall": overall}, _cohort_scores(reference))
+    drawn = profile_figure(profiles, {**totals, "overall": overall}, _cohort_scores(reference))
     words = paragraph(
         "Gait variable score (GVS): root mean square difference of the mean curve from the reference mean over the "
         "cycle. Gait profile score (GPS): root mean square over the nine of a side; overall over 15, the pelvis once, "
@@ -44,9 +47,8 @@ def scores_section(result: Result) -> str:
     )
     source = f"Reference: {reference.get('description')}. {reference.get('source')}." if reference else ""
     licence = f" Licence: {reference.get('licence')}" if reference else ""
-    return tag(
-        "section", title + picture + _table(sides, overall) + words + paragraph(source + licence, "note") + notes
-    )
+    named = paragraph(source + licence, "note") if source else None
+    return (section("Scores", picture(drawn), _table(sides, overall), words, named, notes),)
 
 
 def _numbers(values: Mapping[str, object]) -> dict[str, float]:
@@ -59,7 +61,7 @@ def _cohort_scores(reference: Mapping[str, object]) -> dict[str, float]:
     return _numbers({**scores, "gps": mapping(reference.get("gps")).get("mean")})
 
 
-def _table(sides: Mapping[str, Mapping[str, object]], overall: float | None) -> str:
+def _table(sides: Mapping[str, Mapping[str, object]], overall: float | None) -> Table:
     rows = [
         (
             f"GVS {name.replace('_', ' ')} [deg]",
@@ -79,13 +81,13 @@ def _with_sd(values: Mapping[str, object]) -> str:
     return fixed(gps, 1) + (f" ± {fixed(sd, 1)}" if sd is not None and gps is not None else "")
 
 
-def strides_section(result: Result) -> str:
+def strides_section(result: Result) -> Section:
     """Consistency of the curves, and the strides that differ."""
-    title = tag("h2", "Strides and consistency")
+    title = "Strides and consistency"
     members = result.part("strides")
     strides = [mapping(item) for item in sequence(members.get("strides"))]
     if not strides:
-        return tag("section", title + missing("strides", "result.json lists none"))
+        return section(title, missing("strides", "result.json lists none"))
     flagged = [stride for stride in strides if sequence(stride.get("outlier"))]
     chosen = [_stride(stride) for stride in strides if stride.get("representative") is True]
     lines = [
@@ -94,11 +96,11 @@ def strides_section(result: Result) -> str:
     parts = [
         paragraph(f"Representative strides (closest to the median stride): {', '.join(chosen) or 'none is complete'}."),
         paragraph(f"Strides that differ from the others: {len(flagged)} of {len(strides)}.", "lead"),
-        bullets(lines, "alert") if lines else "",
+        bullets(lines, "alert") if lines else None,
         _consistency(mapping(members.get("consistency"))),
         paragraph(str(members.get("rule") or ""), "note"),
     ]
-    return tag("section", title + "".join(parts))
+    return section(title, *parts)
 
 
 def _stride(stride: Mapping[str, object]) -> str:
@@ -107,7 +109,7 @@ def _stride(stride: Mapping[str, object]) -> str:
     return f"{stride.get('trial')} {stride.get('side')}{span}"
 
 
-def _consistency(values: Mapping[str, object]) -> str:
+def _consistency(values: Mapping[str, object]) -> Block:
     if not values:
         return missing("consistency", "no side has two complete strides")
     rows = [

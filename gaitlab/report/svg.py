@@ -10,6 +10,22 @@ from html import escape
 
 import numpy as np
 
+STYLE: Mapping[str, str] = {
+    "text": "font-size:12px;fill:#1c232b",
+    ".title": "font-size:13px;font-weight:600",
+    ".heading": "font-size:14px;font-weight:600;fill:#5b6672",
+    ".tick": "font-size:11px;fill:#5b6672",
+    ".direction": "font-size:11px;fill:#5b6672",
+    ".note": "font-size:12px;fill:#5b6672",
+    ".label": "font-size:13px",
+    ".alert": "font-size:11px;font-weight:600;fill:#a85a00;paint-order:stroke;stroke:#fff;stroke-width:3px",
+    ".panel": "fill:none;stroke:#9aa4ae;stroke-width:1",
+    ".axis": "stroke:#9aa4ae;stroke-width:1",
+    ".grid": "stroke:#e3e7eb;stroke-width:1",
+    ".zero": "stroke:#8a949e;stroke-width:1",
+}
+"""Look of the classes that figures use."""
+FONTS = "system-ui,'DejaVu Sans',Arial,sans-serif"
 _ENTER = "M"
 _CONTINUE = "L"
 _MOST_POINTS = 150
@@ -152,3 +168,15 @@ def figure(width: float, height: float, content: str, title: str) -> str:
     view = f"0 0 {number(width)} {number(height)}"
     name = element("title", escape(title))
     return element("svg", name + content, viewBox=view, role="img", **{"class": "figure", "aria_label": title})
+
+
+def style_sheet(scope: str = "") -> str:
+    """Style rules of the figures, for elements inside `scope`, for instance `.figure `."""
+    return "".join(f"{scope}{selector}{{{rules}}}" for selector, rules in STYLE.items())
+
+
+def standalone(markup: str, fonts: str = FONTS) -> str:
+    """The same figure with its style inside, so that it can stand in a file of its own."""
+    start, end = markup.split(">", 1)
+    style = element("style", f"text{{font-family:{fonts}}}{style_sheet()}")
+    return start.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"', 1) + ">" + style + end

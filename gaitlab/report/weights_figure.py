@@ -1,4 +1,4 @@
-"""Pictures of the weights: bars with deviations, fit beside other weights, share of each criterion in time."""
+"""Pictures of the weights: bars with deviations, fit beside other weights."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from .colours import CENTRE, criterion_colour
 from .result import Criterion, Weights, mapping, real
-from .svg import Axes, area, clipped, figure, frame, rectangle, straight, text, ticks
+from .svg import Axes, clipped, figure, frame, rectangle, straight, text, ticks
 from .wording import spoken
 
 _WIDTH, _BAR, _GAP, _LABEL = 1000.0, 20.0, 14.0, 270.0
@@ -47,46 +47,6 @@ def fit_figure(found: float, others: Mapping[str, float]) -> str:
         parts.append(rectangle(axes.left, y, axes.x(float(np.degrees(rms))) - axes.left, _BAR, fill=fill))
         parts.append(text(f"{np.degrees(rms):.2f}", axes.x(float(np.degrees(rms))) + 6, y + 14.5, **{"class": "label"}))
     return figure(_WIDTH, axes.bottom + 44.0, "".join(parts), "Fit with the weights found and with others")
-
-
-def share_figure(time: np.ndarray, share: np.ndarray, names: Sequence[str]) -> str:
-    """Stack the share of each criterion in the cost at each instant.
-
-    Args:
-        time: Time from the first stored frame [s], shape (n,).
-        share: Cost of each criterion, any unit, shape (n, n_criteria); each instant is scaled to 100 %.
-        names: One per criterion.
-    """
-    axes = Axes(left=70.0, top=34.0, width=900.0, height=190.0, x_range=_span(time), y_range=(0.0, 100.0))
-    part = np.clip(np.nan_to_num(share), 0.0, None)
-    total = part.sum(axis=1, keepdims=True)
-    part = 100.0 * np.divide(part, total, out=np.zeros_like(part), where=total > 0.0)
-    upper = np.cumsum(part, axis=1)
-    bands = [
-        area(axes, time, upper[:, k] - part[:, k], upper[:, k], fill=criterion_colour(k)) for k in range(part.shape[1])
-    ]
-    parts = [
-        frame(axes, ticks(*axes.x_range, 8), (0.0, 25.0, 50.0, 75.0, 100.0)),
-        clipped(axes, "".join(bands)),
-        text("% of the cost at that instant", 70.0, 24.0, **{"class": "note"}),
-        text("time [s]", axes.right, axes.bottom + 30.0, **{"class": "note", "text_anchor": "end"}),
-    ]
-    return figure(_WIDTH, axes.bottom + 40.0, "".join(parts), "Share of each criterion in time") + colour_key(names)
-
-
-def colour_key(names: Sequence[str]) -> str:
-    """Legend of the criteria's colours, as a figure as wide as the others."""
-    parts = list[str]()
-    for index, name in enumerate(names):
-        x, y = 70.0 + 300.0 * (index % 3), 4.0 + 20.0 * (index // 3)
-        parts.append(rectangle(x, y, 14.0, 12.0, fill=criterion_colour(index)))
-        parts.append(text(spoken(name), x + 20.0, y + 10.5, **{"class": "label"}))
-    return figure(_WIDTH, 4.0 + 20.0 * (1 + (len(names) - 1) // 3), "".join(parts), "Colours of the criteria")
-
-
-def _span(time: np.ndarray) -> tuple[float, float]:
-    first, last = float(time[0]), float(time[-1])
-    return (first, last) if last > first else (first, first + 1.0)
 
 
 def _bar_axes(n_bars: int, high: float) -> Axes:

@@ -4,11 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .markup import ABSENT, bullets, fixed, label, missing, paragraph, plain, rows_of, table, tag
+from .blocks import Block, Paragraph, Section, bullets, missing, paragraph, picture, section, table
+from .formatting import ABSENT, fixed, label, plain, rows_of
 from .result import Result, Weights, mapping, real, reals, sequence
-from .walk_figure import forces_figure, joints_figure, modelled_part, phase_spans
-from .walk_file import Walk
-from .weights_figure import fit_figure, share_figure, weights_figure
+from .weights_figure import fit_figure, weights_figure
 from .wording import CAVEAT, spoken, weights_in_words
 
 NOT_CONVERGED = "Not converged: what follows is the last iterate, not a result."
@@ -25,35 +24,34 @@ _SOLVER_WORDS = {
 }
 
 
-def weights_section(result: Result) -> str:
+def weights_sections(result: Result) -> tuple[Section, ...]:
     """Everything about the weights, marked where the computation did not converge."""
-    title = tag("h2", "What the walk trades off")
+    title = "What the walk trades off"
     weights = result.weights
     if weights is None or not weights.criteria:
         why = "they were not asked for, or the computation stopped before them; see the warnings"
-        return tag("section", title + missing("weights of the criteria", why))
-    mark = "" if weights.converged else paragraph(NOT_CONVERGED, "stamp")
-    words = bullets(weights_in_words(weights), "words") + paragraph(CAVEAT, "caveat")
+        return (section(title, missing("weights of the criteria", why)),)
     notes = [str(note) for note in sequence(weights.document.get("notes"))]
     parts = [
-        mark,
-        words,
-        weights_figure(weights),
+        None if weights.converged else paragraph(NOT_CONVERGED, "stamp"),
+        bullets(weights_in_words(weights), "words"),
+        paragraph(CAVEAT, "caveat"),
+        picture(weights_figure(weights)),
         _dots_note(weights),
-        _weights_table(weights),
-        bullets(notes) if notes else "",
+        *_weights_tables(weights),
+        bullets(notes) if notes else None,
     ]
-    first = tag("section", title + "".join(parts), "page" if weights.converged else "page unsolved")
-    return first + _fit(weights) + _strides(weights) + _certificate(weights)
+    first = section(title, *parts, kind="" if weights.converged else "unsolved")
+    return (first, _fit(weights), *_strides(weights), _certificate(weights))
 
 
-def _dots_note(weights: Weights) -> str:
+def _dots_note(weights: Weights) -> Paragraph:
     words = "Bars: weight; whiskers: one standard deviation; hatched: not identifiable."
     several = len(sequence(weights.document.get("strides"))) > 1
     return paragraph(words + (" Dots below a bar: the weight of each single stride." if several else ""), "note")
 
 
-def _weights_table(weights: Weights) -> str:
+def _weights_tables(weights: Weights) -> tuple[Block, Block]:
     rows = [
         (
             spoken(c.name),
@@ -66,10 +64,10 @@ def _weights_table(weights: Weights) -> str:
         for c in weights.criteria
     ]
     header = ("criterion", "weight", "sd", "identifiable", "raw weight", "share of cost")
-    return table(header, rows, "Weights of the criteria") + _correlation(weights)
+    return table(header, rows, "Weights of the criteria"), _correlation(weights)
 
 
-def _correlation(weights: Weights) -> str:
+def _correlation(weights: Weights) -> Block:
     if weights.correlation is None:
         return missing("correlation of the weights", "result.json holds none")
     names = [spoken(criterion.name) for criterion in weights.criteria]
@@ -78,20 +76,22 @@ def _correlation(weights: Weights) -> str:
     return table(("", *names), rows, "Correlation of the weights' estimates")
 
 
-def _fit(weights: Weights) -> str:
-    title = tag("h2", "How well the model fits")
+def _fit(weights: Weights) -> Section:
+    title = "How well the model fits"
     if weights.fit_rms is None:
-        return tag("section", title + missing("fit", "result.json holds none"))
-    picture = fit_figure(weights.fit_rms, weights.comparison) if weights.comparison else ""
-    absent = "" if picture else missing("comparison with other weights", "it was not computed")
+        return section(title, missing("fit", "result.json holds none"))
+    if weights.comparison:
+        beside: Block | None = picture(fit_figure(weights.fit_rms, weights.comparison))
+    else:
+        beside = missing("comparison with other weights", "it was not computed")
     rows = [_fit_row(name, rms) for name, rms in weights.per_joint.items()]
     rows.append(("all", f"{np.degrees(weights.fit_rms):.2f}", f"{weights.fit_rms:.4f}"))
     joints = table(("joint", "rms [deg]", "rms [rad]"), rows, "Model-optimal minus measured angles")
     unseen = reals(mapping(weights.document.get("fit")).get("unseen_stride_rms_rad"))
     others = [(name, f"{np.degrees(rms):.2f}", f"{rms:.4f}") for name, rms in unseen.items()]
     caption = "The same weights on strides that were not used to find them"
-    seen = table(("stride", "rms [deg]", "rms [rad]"), others, caption) if others else ""
-    return tag("section", title + picture + absent + joints + seen)
+    seen = table(("stride", "rms [deg]", "rms [rad]"), others, caption) if others else None
+    return section(title, beside, joints, seen)
 
 
 def _fit_row(name: str, rms: float) -> tuple[str, str, str]:
@@ -101,11 +101,11 @@ def _fit_row(name: str, rms: float) -> tuple[str, str, str]:
     return spoken(name), f"{np.degrees(rms):.2f}", f"{rms:.4f}"
 
 
-def _strides(weights: Weights) -> str:
+def _strides(weights: Weights) -> tuple[Section, ...]:
     strides = [mapping(stride) for stride in sequence(weights.document.get("strides"))]
     pooled = mapping(weights.document.get("pooled"))
     if len(strides) < 2 and not pooled:
-        return ""
+        return ()
     names = [criterion.name for criterion in weights.criteria]
     header = ("stride", *(spoken(name) for name in names), "fit rms [rad]", "status")
     rows = [
@@ -114,7 +114,7 @@ def _strides(weights: Weights) -> str:
     if pooled:
         rows.append(("pooled", *_numbers(pooled.get("weights"), names), ABSENT, ABSENT))
         rows.append(("sd between strides", *_numbers(pooled.get("between_stride_sd"), names), ABSENT, ABSENT))
-    return tag("section", tag("h2", "Strides") + table(header, rows, "Weights of each stride, and pooled"))
+    return (section("Strides", table(header, rows, "Weights of each stride, and pooled")),)
 
 
 def _stride_name(stride: Mapping[str, object]) -> str:
@@ -132,10 +132,9 @@ def _stride_state(stride: Mapping[str, object]) -> tuple[str, str]:
     return fixed(real(stride.get("fit_rms_rad")), 4), ABSENT if status is None else str(status).replace("_", " ")
 
 
-def _certificate(weights: Weights) -> str:
-    title = tag("h2", "Certificate")
+def _certificate(weights: Weights) -> Section:
     if not weights.solver:
-        return tag("section", title + missing("certificate", "result.json holds none, so nothing here is certified"))
+        return section("Certificate", missing("certificate", "result.json holds none, so nothing here is certified"))
     given = {_SOLVER_WORDS.get(key, label(key)): value for key, value in weights.solver.items() if value != ""}
     rows = [row for name, value in given.items() for row in rows_of(value, name)]
     verdict = (
@@ -143,56 +142,4 @@ def _certificate(weights: Weights) -> str:
         if weights.converged
         else "Not accepted: the optimality conditions do not hold to the tolerance."
     )
-    return tag("section", title + paragraph(verdict, "lead") + table(("", "value"), rows, kind="facts"))
-
-
-def walk_section(result: Result, walk: Walk | None, why: str) -> str:
-    """Measured and model-optimal walk in time, forces, share of each criterion; `why` explains an absent walk."""
-    title = tag("h2", "The walk of the model")
-    if walk is None:
-        return tag("section", title + missing("measured and model-optimal walk", why))
-    walk = modelled_part(walk)
-    converged = result.weights is None or result.weights.converged
-    mark = "" if converged else paragraph(NOT_CONVERGED, "stamp")
-    return tag("section", title + mark + _joints(walk), "page") + _forces(result, walk) + _share(result, walk)
-
-
-def _joints(walk: Walk) -> str:
-    picture = joints_figure(walk)
-    if picture is None:
-        return missing("joint angles of the model", "walk.npz has no q_measured")
-    absent = (
-        missing("model-optimal curves", "walk.npz has no q_optimal") if walk.numbers("q_optimal", 2) is None else ""
-    )
-    words = (
-        "Degrees over time in seconds, coordinates of the model (rotations "
-        "about y, x, z of each joint), with the model's signs, which are not the clinical signs above. "
-    )
-    spans = [f"{name} {start:.2f}–{end:.2f} s" for name, start, end in phase_spans(walk)]
-    shaded = f"Shaded: phases ({'; '.join(spans)})." if spans else "Phases are not shaded: walk.npz has no phase."
-    return picture + paragraph(words + shaded, "note") + absent
-
-
-def _forces(result: Result, walk: Walk) -> str:
-    title = tag("h2", "Contact forces")
-    picture = forces_figure(walk, result.mass)
-    if picture is None:
-        return tag("section", title + missing("contact forces", "walk.npz has neither forces_optimal nor grf_plates"))
-    words = "Forward is the way of the pelvis on the floor. Plates are not assigned to feet here."
-    absent = [
-        missing(what, f"walk.npz has no {key}")
-        for key, what in (("forces_optimal", "forces of the model"), ("grf_plates", "forces of the plates"))
-        if walk.vectors(key) is None
-    ]
-    return tag("section", title + picture + paragraph(words, "note") + "".join(absent))
-
-
-def _share(result: Result, walk: Walk) -> str:
-    title = tag("h2", "Criteria over the cycle")
-    share = walk.numbers("criteria_share", 2)
-    if share is None:
-        return tag("section", title + missing("share of each criterion in time", "walk.npz has no criteria_share"))
-    criteria = [] if result.weights is None else [criterion.name for criterion in result.weights.criteria]
-    stored = list(walk.names("criteria_names")) or criteria
-    names = (stored + [f"criterion {k + 1}" for k in range(len(stored), share.shape[1])])[: share.shape[1]]
-    return tag("section", title + share_figure(walk.time, share, names))
+    return section("Certificate", paragraph(verdict, "lead"), table(("", "value"), rows, kind="facts"))

@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from gaitlab.report.html import render
+from report.page import render
 
 pytestmark = pytest.mark.shared_data
 

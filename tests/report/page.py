@@ -2,7 +2,16 @@
 
 from html.parser import HTMLParser
 
+from gaitlab.report.build import ReportOptions, build_report
+from gaitlab.report.edition import DRAFT
+from gaitlab.report.source import read_source
+
 VOID = {"meta", "br", "hr", "img", "link", "input"}
+
+
+def render(directory):
+    """The report of a result folder as HTML."""
+    return build_report(read_source(directory), ReportOptions(formats=("html",)), DRAFT, {})["html"].decode()
 
 
 class Page(HTMLParser):

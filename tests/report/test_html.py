@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
-from report.page import Page
+from report.page import Page, render
 from synthetic_output import document, walk_arrays, write_output
 
 from gaitlab.clinical.document import CURVES, read_document
 from gaitlab.errors import OutputError
-from gaitlab.report.html import INTENDED_USE, MOST_TRIALS, render, write_report
+from gaitlab.report.edition import INTENDED_USE
+from gaitlab.report.files import write_preview
+from gaitlab.report.pages import MOST_TRIALS
 
 ADDRESSES = ("src", "href", "xlink:href", "action", "data", "poster", "srcset")
 HOSTILE = '</style><script>alert(1)</script><img src=x onerror="alert(2)">&amp;'
@@ -16,7 +18,7 @@ def test_the_synthetic_document_keeps_the_contract(one_walk):
 
 
 def test_the_page_needs_nothing_from_outside(one_walk):
-    markup = write_report(one_walk).read_text()
+    markup = write_preview(one_walk).read_text()
     page = Page(markup)
     addresses = [value for name in ADDRESSES for value in page.attributes(name)]
     assert not [value for value in addresses if not value.startswith("#")]
@@ -24,15 +26,15 @@ def test_the_page_needs_nothing_from_outside(one_walk):
 
 
 def test_the_page_is_well_formed_and_small(two_walks):
-    markup = write_report(two_walks).read_text()
+    markup = write_preview(two_walks).read_text()
     page = Page(markup)
     assert not page.unclosed and not page.open
     assert len(markup) < 1_500_000
 
 
 def test_the_same_directory_gives_the_same_bytes(one_walk):
-    first = write_report(one_walk).read_bytes()
-    assert write_report(one_walk).read_bytes() == first
+    first = write_preview(one_walk).read_bytes()
+    assert write_preview(one_walk).read_bytes() == first
 
 
 def test_all_nine_curves_are_drawn_for_both_sides(one_walk):
@@ -141,17 +143,17 @@ def test_a_directory_without_a_result_is_refused(tmp_path):
     with pytest.raises(
         OutputError, match=r"has no result\.json; give the directory that 'gaitlab analyse --out' wrote"
     ):
-        write_report(tmp_path)
+        write_preview(tmp_path)
 
 
 @pytest.mark.parametrize("content", ["{", "[1]"])
 def test_a_broken_result_is_refused(tmp_path, content):
     (tmp_path / "result.json").write_text(content)
     with pytest.raises(OutputError, match="run 'gaitlab analyse' again"):
-        write_report(tmp_path)
+        write_preview(tmp_path)
 
 
 def test_a_page_that_cannot_be_written_is_refused(one_walk):
     (one_walk / "report.html").mkdir()
     with pytest.raises(OutputError, match="cannot be written"):
-        write_report(one_walk)
+        write_preview(one_walk)

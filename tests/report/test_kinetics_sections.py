@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
-from report.page import Page
+from report.page import Page, render
 from synthetic_output import document, walk_arrays, write_output
 
 from gaitlab.clinical.kinetics_document import UNITS
-from gaitlab.report.html import render
 from gaitlab.report.kinetics_figure import PANELS
 
 REASON = "walk_1: no kinetics of the right side, its foot has no valid contact with a force plate"
@@ -69,7 +68,7 @@ def test_without_any_curve_the_reason_stands_there(tmp_path):
 def test_an_old_result_says_that_it_holds_no_kinetics(tmp_path):
     text = Page(render(write_output(tmp_path, document(), walk_arrays()))).text
     assert "Not shown: moments, powers and ground reactions. Reason: result.json holds none" in text
-    assert "EMG" not in text
+    assert "Not shown: muscle activity. Reason: result.json holds none" in text
 
 
 def test_a_curve_that_leaves_its_scale_is_told(tmp_path):

@@ -1,8 +1,7 @@
-import numpy as np
 from synthetic_output import document, write_output
 
 from gaitlab.report.result import read_result
-from gaitlab.report.weights_figure import fit_figure, share_figure, weights_figure
+from gaitlab.report.weights_figure import fit_figure, weights_figure
 
 
 def test_only_what_is_not_identifiable_is_hatched(tmp_path):
@@ -14,9 +13,3 @@ def test_only_what_is_not_identifiable_is_hatched(tmp_path):
 def test_the_best_fit_stands_first():
     drawn = fit_figure(0.04, {"equal weights": 0.03, "only torque": 0.05})
     assert drawn.index(">equal weights<") < drawn.index(">weights found<") < drawn.index(">only torque<")
-
-
-def test_shares_fill_the_whole_height_and_stand_gaps():
-    share = np.array([[1.0, 1.0], [np.nan, 2.0], [0.0, 0.0]])
-    drawn = share_figure(np.array([0.0, 0.5, 1.0]), share, ("a", "b"))
-    assert drawn.count("<polygon") == 2 and "nan" not in drawn

@@ -1,7 +1,4 @@
-"""HTML as text. Arguments called `markup` are trusted; everything else is escaped here and nowhere else."""
-
-from collections.abc import Iterable, Mapping, Sequence
-from html import escape
+"""JSON values as words and numbers for people."""
 
 from .result import mapping, real, sequence
 
@@ -23,38 +20,6 @@ _UNITS = {
     "_s": "s",
     "_n": "N",
 }
-
-
-def tag(name: str, markup: str, kind: str = "", identifier: str = "") -> str:
-    """Wrap trusted markup in an element, with a class and an id if given."""
-    attributes = (f' class="{escape(kind)}"' if kind else "") + (f' id="{escape(identifier)}"' if identifier else "")
-    return f"<{name}{attributes}>{markup}</{name}>"
-
-
-def paragraph(words: str, kind: str = "") -> str:
-    """Write a paragraph."""
-    return tag("p", escape(words), kind)
-
-
-def bullets(items: Iterable[str], kind: str = "") -> str:
-    """Write a list of sentences."""
-    return tag("ul", "".join(tag("li", escape(item)) for item in items), kind)
-
-
-def missing(what: str, why: str) -> str:
-    """Say what the page does not show, and why."""
-    return paragraph(f"Not shown: {what}. Reason: {why}.", "missing")
-
-
-def table(header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "", kind: str = "") -> str:
-    """Write a table; the first cell of each row is its heading."""
-    head = tag("thead", tag("tr", "".join(f'<th scope="col">{escape(cell)}</th>' for cell in header)))
-    body = "".join(
-        tag("tr", f'<th scope="row">{escape(first)}</th>' + "".join(tag("td", escape(cell)) for cell in cells))
-        for first, *cells in rows
-    )
-    title = tag("caption", escape(caption)) if caption else ""
-    return tag("div", tag("table", title + head + tag("tbody", body), kind), "scroll")
 
 
 def unit_of(key: str) -> str:
@@ -102,8 +67,3 @@ def rows_of(value: object, prefix: str = "") -> list[tuple[str, str]]:
         return [(prefix, ", ".join(plain(item) for item in items))]
     empty = isinstance(value, dict | list)
     return [(prefix, "none" if empty else plain(value))]
-
-
-def facts(values: Mapping[str, object], caption: str = "") -> str:
-    """Table of everything in a JSON object, flattened."""
-    return table(("", "value"), rows_of(values), caption, "facts")

@@ -1,6 +1,6 @@
 import pytest
 
-from gaitlab.report.markup import label, plain, rows_of
+from gaitlab.report.formatting import label, plain, rows_of
 
 
 @pytest.mark.parametrize(

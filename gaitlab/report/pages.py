@@ -1,0 +1,113 @@
+"""The pages of a report, in order: what each shows is decided here, how it looks by the writers of HTML and PDF."""
+
+from collections.abc import Mapping, Sequence
+
+from ..errors import OutputError
+from .blocks import Page, Section, missing, section
+from .clinical_sections import (
+    body_section,
+    consistency_section,
+    events_section,
+    kinematics_section,
+    spatiotemporal_section,
+)
+from .front_sections import examination_sections, front_sections
+from .kinetics_sections import emg_sections, kinetics_sections
+from .provenance_sections import provenance_sections
+from .quality_sections import quality_sections
+from .score_sections import scores_sections, strides_section
+from .source import Source, Trial
+from .stills_section import stills_section
+from .walk_sections import walk_sections
+from .weights_sections import weights_sections
+
+KEYS = (
+    "front",
+    "examination",
+    "kinematics",
+    "consistency",
+    "kinetics",
+    "emg",
+    "spatiotemporal",
+    "scores",
+    "weights",
+    "walk",
+    "stills",
+    "quality",
+    "provenance",
+)
+"""Names of the pages, in their order."""
+MOST_TRIALS = 4
+"""Trials with pages of their own, so that the report stays small; the rest have their own reports."""
+
+
+def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str] = KEYS) -> tuple[Page, ...]:
+    """All pages that are asked for.
+
+    Args:
+        source: What the report is made from.
+        program: Versions and machine that make the report, by name.
+        keys: Names of pages; their order does not matter.
+
+    Raises:
+        OutputError: A page of that name does not exist.
+    """
+    unknown = [key for key in keys if key not in KEYS]
+    if unknown or not keys:
+        raise OutputError(f"pages '{', '.join(unknown)}' do not exist; available: {', '.join(KEYS)}")
+    overall = source.overall
+    sections: dict[str, tuple[Section, ...]] = {
+        "front": front_sections(source),
+        "examination": examination_sections(source),
+        "kinematics": (kinematics_section(overall),),
+        "consistency": (_every_cycle(source), strides_section(overall)),
+        "kinetics": kinetics_sections(overall),
+        "emg": emg_sections(overall),
+        "spatiotemporal": (spatiotemporal_section(overall),),
+        "scores": scores_sections(overall),
+        "weights": weights_sections(overall),
+        **_walk_pages(source.trials[0], only=not source.several),
+        "quality": (*quality_sections(overall), events_section(overall), body_section(overall)),
+        "provenance": provenance_sections(source, program),
+    }
+    common = [Page(key=key, sections=sections[key]) for key in KEYS if key in keys and key in sections]
+    return (*common, *_trial_pages(source, keys))
+
+
+def _every_cycle(source: Source) -> Section:
+    why = " ".join(trial.problems.get("angles", "") for trial in source.trials).strip()
+    return consistency_section(source.overall, [(trial.result, trial.angles) for trial in source.trials], why)
+
+
+def _walk_pages(trial: Trial, only: bool) -> dict[str, tuple[Section, ...]]:
+    """Pages on the walk in time; of several trials each has its own, so there are none in common."""
+    if not only:
+        return {}
+    why = trial.problems.get("walk", "")
+    return {
+        "walk": walk_sections(trial.result, trial.walk, why),
+        "stills": (stills_section(trial.result, trial.walk, why),),
+    }
+
+
+def _trial_pages(source: Source, keys: Sequence[str]) -> list[Page]:
+    """Weights, walk and stills of each of several trials; without an optimal walk only the stills of the first."""
+    if not source.several:
+        return []
+    pages = list[Page]()
+    solved = [t for t in source.trials if t.walk is not None and t.walk.numbers("q_optimal", 2) is not None]
+    for trial in solved[:MOST_TRIALS]:
+        found = {"weights": weights_sections(trial.result), **_walk_pages(trial, only=True)}
+        pages += [Page(key=key, sections=found[key], trial=trial.result.name) for key in found if key in keys]
+    if not solved and "stills" in keys:
+        first = source.trials[0]
+        stills = stills_section(first.result, first.walk, first.problems.get("walk", ""))
+        pages.append(Page(key="stills", sections=(stills,), trial=first.result.name))
+    rest = ", ".join(trial.result.name for trial in solved[MOST_TRIALS:])
+    if rest:
+        why = (
+            f"only the first {MOST_TRIALS} trials have pages of their own, to keep this report small; the directories "
+            "of the others hold their own reports"
+        )
+        pages.append(Page(key="trials", sections=(section("Other trials", missing(rest, why)),)))
+    return pages
