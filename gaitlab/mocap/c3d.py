@@ -6,7 +6,7 @@ from pathlib import Path
 import ezc3d
 import numpy as np
 
-from gaitlab.errors import OutputError
+from gaitlab.errors import InvalidRecording, OutputError
 from gaitlab.mocap.force_plates import MILLIMETRES, plate_samples
 from gaitlab.mocap.interpretation import interpret
 from gaitlab.mocap.raw import ParameterValue, RawRecording
@@ -28,12 +28,20 @@ def read_c3d(path: Path, limits: ReaderLimits | None = None) -> Recording:
         InvalidRecording: The file cannot be used; the message says why and what to do.
     """
     raw = read_raw(path, limits or ReaderLimits())
-    return interpret(raw, name=path.stem, sha256=_sha256(path))
+    return interpret(raw, name=path.stem, sha256=file_hash(path))
 
 
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def file_hash(path: Path) -> str:
+    """SHA-256 of a file.
+
+    Raises:
+        InvalidRecording: It cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise InvalidRecording(f"{path} cannot be read ({error.strerror}): give the path of a C3D file") from error
 
 
 def extract(path: Path) -> RawRecording:

@@ -178,6 +178,17 @@ def centre_of_pressure(plate: ForcePlate, smallest: float = 20.0) -> np.ndarray:
     return plate.corners.mean(axis=0) + local @ rotation.T
 
 
+def free_moment(plate: ForcePlate, centre: np.ndarray) -> np.ndarray:
+    """Moment about the plate's upward normal n at the centre of pressure p [N*m], shape (n_samples,).
+
+    T = n . (M_c - (p - c) x F) with the middle c of the surface; `centre` is p [m], shape (n_samples, 3), and T is NaN
+    where p is.
+    """
+    normal = np.cross(plate.corners[1] - plate.corners[0], plate.corners[3] - plate.corners[0])
+    normal = normal / np.linalg.norm(normal) * (1.0 if normal[2] >= 0.0 else -1.0)
+    return (plate.moment - np.cross(centre - plate.corners.mean(axis=0), plate.force)) @ normal
+
+
 def at_video_frames(plate: ForcePlate, rate: float, n_frames: int) -> ForcePlate:
     """The plate with one sample per video frame: the centred mean of the samples around it.
 

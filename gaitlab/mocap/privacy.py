@@ -5,7 +5,7 @@ import re
 from gaitlab.mocap.labels import strip_prefix
 from gaitlab.mocap.raw import RawRecording
 
-_PERSONAL = re.compile(r"BIRTH|DOB$|PATIENT|SURNAME|FIRST_?NAME|LAST_?NAME|FAMILY_?NAME")
+PERSONAL = re.compile(r"BIRTH|DOB$|PATIENT|SURNAME|FIRST_?NAME|LAST_?NAME|FAMILY_?NAME")
 _WORDS = re.compile(r"[^\W\d_]{2,}([ ,.'-]+[^\W\d_]+)*")  # letters only: codes such as P01 hold digits
 
 
@@ -18,7 +18,7 @@ def privacy_warnings(raw: RawRecording) -> tuple[str, ...]:
         warnings.append("the prefix of the marker labels may be a person's name; gaitlab does not keep it")
     for group, members in raw.parameters.items():
         for name, value in members.items():
-            filled = any(value) if isinstance(value, tuple) else value.size > 0
-            if filled and _PERSONAL.search(name):
+            filled = any(value) if isinstance(value, tuple) else bool(value.any())
+            if filled and PERSONAL.search(name):
                 warnings.append(f"{group}:{name} of the file may be personal data; gaitlab does not keep it")
     return tuple(warnings)
