@@ -12,7 +12,7 @@ from gaitlab.inverse.conventional_geometry import cross, unit
 from gaitlab.inverse.dynamics import Bodies, JointLoad, Wrench, leg_loads
 from gaitlab.inverse.measured_body import laboratory_to_gait, measured_body
 from gaitlab.inverse.published_inertia import published_bodies
-from gaitlab.mocap.force_plates import at_video_frames, centre_of_pressure
+from gaitlab.mocap.force_plates import at_video_frames, centre_of_pressure, free_moment
 from gaitlab.mocap.plate_assignment import PlateContact
 from gaitlab.mocap.recording import Event, Recording, Side
 from gaitlab.multibody.rigid_body import RigidBody
@@ -114,7 +114,7 @@ def ground_reaction(
 
     Returns:
         The wrench about the laboratory's origin [N, N*m]; the centre of pressure [m], shape (n, 3); the free moment
-        [N*m], shape (n,), n . (M_c - (p - c) x F) with the plate's upward normal n and middle c. Both NaN without load.
+        [N*m], shape (n,), see `force_plates.free_moment`. Both NaN without load.
     """
     n = recording.n_frames
     force, moment = np.zeros((n, 3)), np.zeros((n, 3))
@@ -126,17 +126,12 @@ def ground_reaction(
         frames = slice(int(contact.start * recording.rate), min(int(np.ceil(contact.end * recording.rate)) + 1, n))
         middle = plate.corners.mean(axis=0)
         F, M = plate.force[frames], plate.moment[frames]
-        centre = centre_of_pressure(plate, PRESSURE)[frames]
+        whole = centre_of_pressure(plate, PRESSURE)
         force[frames] += F
         moment[frames] += M + np.cross(middle, F)
-        pressure[frames] = centre
-        twist[frames] = (M - cross(centre - middle, F)) @ _upward_normal(plate.corners)
+        pressure[frames] = whole[frames]
+        twist[frames] = free_moment(plate, whole)[frames]
     return Wrench(point=np.zeros((n, 3)), force=force, moment=moment), pressure, twist
-
-
-def _upward_normal(corners: np.ndarray) -> np.ndarray:
-    normal = np.cross(corners[1] - corners[0], corners[3] - corners[0])
-    return normal / np.linalg.norm(normal) * (1.0 if normal[2] >= 0.0 else -1.0)
 
 
 def ground_is_known(

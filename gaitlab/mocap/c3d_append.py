@@ -65,11 +65,12 @@ def append_here(source: Path, outputs: Sequence[PointOutput], target: Path) -> N
     _make_texts_plain(c3d)
     labels = _free_labels(c3d, outputs)
     _put_points(c3d, np.stack([_in_file_units(c3d, output) for output in outputs], axis=2))
-    _extend(c3d, "LABELS", labels)
+    _extend(c3d, "POINT", "LABELS", labels)
     for kind in UNITS:
-        _extend(c3d, kind, [label for label, output in zip(labels, outputs, strict=True) if output.kind == kind])
-    c3d.add_parameter("GAITLAB", "LABELS", labels)
-    c3d.add_parameter("GAITLAB", "MEANING", [output.meaning for output in outputs])
+        of_kind = [label for label, output in zip(labels, outputs, strict=True) if output.kind == kind]
+        _extend(c3d, "POINT", kind, of_kind)
+    _extend(c3d, "GAITLAB", "LABELS", labels)
+    _extend(c3d, "GAITLAB", "MEANING", [output.meaning for output in outputs])
     c3d.write(str(target))
     _compare(extract(source), extract(target))
 
@@ -123,18 +124,18 @@ def _put_points(c3d: ezc3d.c3d, values: np.ndarray) -> None:
     meta["camera_masks"] = np.concatenate([meta["camera_masks"], masks], axis=1)
 
 
-def _extend(c3d: ezc3d.c3d, name: str, labels: list[str]) -> None:
-    """Appends to the list POINT:NAME, or to NAME2, NAME3 ... so that none grows too long."""
-    points = c3d["parameters"]["POINT"]
+def _extend(c3d: ezc3d.c3d, group: str, name: str, texts: list[str]) -> None:
+    """Appends to the list GROUP:NAME, or to NAME2, NAME3 ... so that none grows too long."""
+    members = c3d["parameters"].get(group, {})
     number = 1
-    while f"{name}{number + 1}" in points:
+    while f"{name}{number + 1}" in members:
         number += 1
-    last = name if number == 1 else f"{name}{number}"
-    kept = list(points[last]["value"]) if last in points else []
-    room = MOST_ENTRIES - len(kept)
-    c3d.add_parameter("POINT", last, [*kept, *labels[:room]])
-    if labels[room:]:
-        c3d.add_parameter("POINT", f"{name}{number + 1}", labels[room:])
+    while texts:
+        last = name if number == 1 else f"{name}{number}"
+        kept = list(members[last]["value"]) if last in members else []
+        room = MOST_ENTRIES - len(kept)
+        c3d.add_parameter(group, last, [*kept, *texts[:room]])
+        texts, number = texts[room:], number + 1
 
 
 def _compare(before: RawRecording, after: RawRecording) -> None:

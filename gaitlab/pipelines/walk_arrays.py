@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..mocap.force_plates import at_video_frames, centre_of_pressure, free_moment
 from ..mocap.recording import Event, ForcePlate, Recording, Side
 from ..multibody.kinematics import forward_kinematics, point_positions
 from ..multibody.subject import SubjectModel
@@ -35,6 +36,7 @@ def measured_arrays(
     n = recording.n_frames
     names = sorted(recording.markers)
     plates = [plate_at_frames(plate, recording.rate, n) for plate in recording.force_plates]
+    twists = [_free_moment(plate, recording.rate, n) for plate in recording.force_plates]
     time = np.arange(n) / recording.rate
     return {
         "time": time,
@@ -48,6 +50,7 @@ def measured_arrays(
         "phase": support_phases(events, time),
         "grf_plates": np.stack([force for force, _ in plates], axis=1) if plates else np.zeros((n, 0, 3)),
         "cop_plates": np.stack([centre for _, centre in plates], axis=1) if plates else np.zeros((n, 0, 3)),
+        "free_moment_plates": np.stack(twists, axis=1) if twists else np.zeros((n, 0)),
     }
 
 
@@ -100,6 +103,13 @@ def plate_at_frames(plate: ForcePlate, rate: float, n_frames: int) -> tuple[np.n
     loaded = np.abs(pressing) > LOADED
     arm = np.cross(normal, moment) / np.where(loaded, pressing, np.nan)[:, None]
     return force, plate.corners.mean(axis=0) + arm
+
+
+def _free_moment(plate: ForcePlate, rate: float, n_frames: int) -> np.ndarray:
+    """About the plate's normal at the centre of pressure [N*m], shape (n_frames,); NaN below 20 N."""
+    at_frames = at_video_frames(plate, rate, n_frames)
+    values = free_moment(at_frames, centre_of_pressure(at_frames, LOADED))
+    return np.concatenate([values, np.full(n_frames - len(values), np.nan)])
 
 
 def centred_means(samples: np.ndarray, per_frame: float, n_frames: int) -> np.ndarray:

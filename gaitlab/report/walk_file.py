@@ -86,7 +86,18 @@ def read_angles(directory: Path) -> Angles | None:
     Raises:
         OutputError: the file is there but is not a table of numbers with a column `time`.
     """
-    path = directory / "angles.csv"
+    table = read_frames(directory / "angles.csv")
+    return None if table is None else Angles(time=table.pop("time"), curves=table)
+
+
+def read_frames(path: Path) -> dict[str, np.ndarray] | None:
+    """Columns of a table with one row per frame, shape (n,) each, `time` [s] first; None if the file is absent.
+
+    An empty cell is NaN.
+
+    Raises:
+        OutputError: the file is there but is not a table of numbers with a column `time`.
+    """
     if not path.is_file():
         return None
     try:
@@ -98,4 +109,4 @@ def read_angles(directory: Path) -> Angles | None:
     columns = dict(zip(header, table.T, strict=True)) if table.shape == (len(rows), len(header)) else {}
     if "time" not in columns:
         raise OutputError(f"{path} has no column 'time' or no rows; run 'gaitlab analyse' again")
-    return Angles(time=columns.pop("time"), curves=columns)
+    return columns
