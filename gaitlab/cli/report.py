@@ -34,7 +34,6 @@ report = typer.Typer(
     name="report",
     help="The clinical report of a result folder: gaitlab report DIR makes it, the commands below sign and amend it.",
     cls=_MakesByDefault,
-    no_args_is_help=True,
 )
 
 

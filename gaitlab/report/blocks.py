@@ -31,7 +31,7 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
     kind: str = ""
-    """Look: sides (second and third column in the sides' colours), facts (no header, text), inputs, text."""
+    """Look: sides (second and third column in the sides' colours), facts (no header, text), inputs, text, narrow."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +42,8 @@ class Picture:
     """One `svg` element with a `title` and a `viewBox`, as `svg.figure` makes it."""
 
 
+LONG = 8
+"""More rows than these make a page start on new paper."""
 Block = Paragraph | Bullets | Table | Picture
 
 
@@ -57,7 +59,7 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True)
 class Page:
-    """One topic of the report; it starts on new paper where it holds a picture."""
+    """One topic of the report."""
 
     key: str
     """Name by which it can be chosen, for instance `kinematics`."""
@@ -71,9 +73,11 @@ class Page:
         return self.sections[0].title
 
     @property
-    def has_picture(self) -> bool:
-        """Whether there is a figure on it."""
-        return any(isinstance(block, Picture) for section in self.sections for block in section.blocks)
+    def is_large(self) -> bool:
+        """Whether it starts on new paper: it holds a figure or begins with a long table."""
+        blocks = [block for section in self.sections for block in section.blocks]
+        rows = sum(len(block.rows) for block in self.sections[0].blocks if isinstance(block, Table))
+        return rows > LONG or any(isinstance(block, Picture) for block in blocks)
 
 
 def paragraph(words: str, kind: str = "") -> Paragraph:

@@ -17,8 +17,8 @@ from .walk_file import Angles
 
 _CONVENTIONS = (
     "Conventions: angles in degrees; pelvic tilt anterior +, obliquity up +, rotation internal +; hip flexion +, "
-    "adduction +, internal rotation +; knee flexion +; ankle dorsiflexion +; foot progression internal +. Left is red, "
-    "right is blue."
+    "adduction +, internal rotation +; knee flexion +; ankle dorsiflexion +; foot progression internal +. Left "
+    "is drawn solid, right dashed."
 )
 
 
@@ -27,7 +27,7 @@ def subject_section(result: Result) -> Section:
     members = result.part("subject")
     known = {key: value for key, value in members.items() if key not in {"segments", "assumed", "parameters"}}
     subject = facts(known, "Subject") if known else missing("subject", "result.json says nothing about it")
-    assumed = ", ".join(str(name) for name in sequence(members.get("assumed")))
+    assumed = ", ".join(str(name).replace("_", " ") for name in sequence(members.get("assumed")))
     estimated = paragraph(f"Estimated, neither measured nor given: {assumed}.", "alert") if assumed else None
     return section("Subject and inputs", subject, estimated, _inputs(result))
 
@@ -216,4 +216,4 @@ def events_section(result: Result) -> Section:
         for e in sorted(result.events, key=lambda e: e.time)
     ]
     header = ("time [s]", "side", "event", "source")
-    return section("Gait events", table(header, rows, "Times from the first stored frame"))
+    return section("Gait events", table(header, rows, "Times from the first stored frame", "narrow"))

@@ -7,10 +7,11 @@ import numpy as np
 
 from ..clinical.cycle_average import N_SAMPLES
 from ..clinical.document import SIDES
-from .colours import SIDE
+from .colours import DASH, SIDE
 from .result import Curve
 from .svg import Axes, area, clipped, curve, element, frame, number, straight, text, ticks
 
+TICK_DASH = {"left": "none", "right": "2 1"}
 PERCENT = np.linspace(0.0, 100.0, N_SAMPLES)
 
 
@@ -59,8 +60,9 @@ def _average(axes: Axes, side: str, values: Curve) -> str:
 
 
 def cycle_line(axes: Axes, side: str, values: np.ndarray, width: float) -> str:
-    """One curve of shape (101,), unit of the axes, in the side's colour."""
-    return curve(axes, PERCENT, values, stroke=SIDE[side], stroke_width=width, stroke_linejoin="round")
+    """One curve of shape (101,), unit of the axes, in the side's colour and line style."""
+    style = {"stroke": SIDE[side], "stroke_width": width, "stroke_dasharray": DASH[side], "stroke_linejoin": "round"}
+    return curve(axes, PERCENT, values, **style)
 
 
 def mean_range(curves: Mapping[str, Curve]) -> tuple[float, float] | None:
@@ -93,23 +95,31 @@ def cycle_panel(panel: CyclePanel, content: str, extent: tuple[float, float] | N
     ]
     if panel.x_label:
         parts.append(text("% of cycle", axes.right, axes.bottom + 29.0, **{"class": "note", "text_anchor": "end"}))
-    if extent is not None and (extent[0] < low or extent[1] > high):
-        words = f"leaves scale: {extent[0]:.{panel.decimals}f} to {extent[1]:.{panel.decimals}f}"
-        parts.append(text(words, axes.left + 6.0, axes.top + 15.0, **{"class": "alert"}))
+    parts.append(leaves_scale(axes, extent, panel.decimals))
     return element("g", "".join(parts), data_curve=panel.name)
+
+
+def leaves_scale(axes: Axes, extent: tuple[float, float] | None, decimals: int) -> str:
+    """Say so where the lowest or highest value lies outside the axes; empty otherwise."""
+    low, high = axes.y_range
+    if extent is None or (extent[0] >= low and extent[1] <= high):
+        return ""
+    words = f"leaves scale: {extent[0]:.{decimals}f} to {extent[1]:.{decimals}f}"
+    return text(words, axes.left + 6.0, axes.top + 15.0, **{"class": "alert"})
 
 
 def _draw_marks(axes: Axes, side: str, marks: Marks) -> str:
     parts = list[str]()
     if marks.foot_off is not None and 0.0 <= marks.foot_off <= 100.0:
         x = axes.x(marks.foot_off)
-        line = {"stroke": SIDE[side], "stroke_width": 1.2, "stroke_dasharray": "5 3"}
+        line = {"stroke": SIDE[side], "stroke_width": 1.0, "stroke_dasharray": DASH[side]}
         parts.append(straight((x, axes.top), (x, axes.bottom), **line))
     for percent, at_top in ((marks.opposite_foot_off, False), (marks.opposite_foot_strike, True)):
         if percent is not None and 0.0 <= percent <= 100.0:
             x, y = axes.x(percent), axes.top if at_top else axes.bottom
             inwards = y + (8.0 if at_top else -8.0)
-            parts.append(straight((x, y), (x, inwards), stroke=SIDE[side], stroke_width=2.0))
+            tick = {"stroke": SIDE[side], "stroke_width": 2.4, "stroke_dasharray": TICK_DASH[side]}
+            parts.append(straight((x, y), (x, inwards), **tick))
     return "".join(parts)
 
 
@@ -118,7 +128,7 @@ def legend_lines(marks: Mapping[str, Marks]) -> tuple[str, ...]:
     known = any(m != Marks() for m in marks.values())
     return (
         "each side on its own cycle, foot strike to foot strike of that side",
-        "dashed vertical line: foot off of that side" if known else "foot off: unknown",
+        "vertical line in the side's style: foot off of that side" if known else "foot off: unknown",
         *(("short tick at the top: opposite foot strike; at the bottom: opposite foot off",) if known else ()),
     )
 
@@ -127,7 +137,7 @@ def legend(x: float, y: float, lines: Sequence[str]) -> str:
     """Colours of the sides, and sentences below."""
     parts = list[str]()
     for index, side in enumerate(SIDES):
-        line = {"stroke": SIDE[side], "stroke_width": 3.0}
+        line = {"stroke": SIDE[side], "stroke_width": 3.0, "stroke_dasharray": DASH[side]}
         parts.append(straight((x + 90.0 * index, y - 4.0), (x + 28.0 + 90.0 * index, y - 4.0), **line))
         parts.append(text(side.capitalize(), x + 34.0 + 90.0 * index, y, **{"class": "title"}))
     return "".join(parts) + "".join(text(w, x, y + 20.0 + 17.0 * i, **{"class": "note"}) for i, w in enumerate(lines))

@@ -11,8 +11,8 @@ from .score_sections import norms_of
 
 _CONVENTIONS = (
     "Conventions: moments are internal, per body mass, positive towards the muscles named second on the axis (an "
-    "internal extensor moment is an external flexor moment); power is positive when muscles generate it. Left is red, "
-    "right is blue. Only cycles enter whose foot stood on one force plate, alone and wholly."
+    "internal extensor moment is an external flexor moment); power is positive when muscles generate it. Left "
+    "is drawn solid, right dashed. Only cycles enter whose foot stood on one force plate, alone and wholly."
 )
 
 

@@ -18,7 +18,7 @@ from .quality_sections import quality_sections
 from .score_sections import scores_sections, strides_section
 from .source import Source, Trial
 from .stills_section import stills_section
-from .walk_sections import walk_sections
+from .walk_sections import share_section, walk_sections
 from .weights_sections import weights_sections
 
 KEYS = (
@@ -66,7 +66,7 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
         "spatiotemporal": (spatiotemporal_section(overall),),
         "scores": scores_sections(overall),
         "weights": weights_sections(overall),
-        **_walk_pages(source.trials[0], only=not source.several),
+        **({} if source.several else _walk_pages(source.trials[0])),
         "quality": (*quality_sections(overall), events_section(overall), body_section(overall)),
         "provenance": provenance_sections(source, program),
     }
@@ -79,14 +79,15 @@ def _every_cycle(source: Source) -> Section:
     return consistency_section(source.overall, [(trial.result, trial.angles) for trial in source.trials], why)
 
 
-def _walk_pages(trial: Trial, only: bool) -> dict[str, tuple[Section, ...]]:
-    """Pages on the walk in time; of several trials each has its own, so there are none in common."""
-    if not only:
-        return {}
-    why = trial.problems.get("walk", "")
+def _walk_pages(trial: Trial) -> dict[str, tuple[Section, ...]]:
+    """Pages on the weights and the walk in time of one trial."""
+    result, why = trial.result, trial.problems.get("walk", "")
+    words, *rest = weights_sections(result)
+    share = [share_section(result, trial.walk, why)] if rest else []
     return {
-        "walk": walk_sections(trial.result, trial.walk, why),
-        "stills": (stills_section(trial.result, trial.walk, why),),
+        "weights": (words, *share, *rest),
+        "walk": walk_sections(result, trial.walk, why),
+        "stills": (stills_section(result, trial.walk, why),),
     }
 
 
@@ -97,7 +98,7 @@ def _trial_pages(source: Source, keys: Sequence[str]) -> list[Page]:
     pages = list[Page]()
     solved = [t for t in source.trials if t.walk is not None and t.walk.numbers("q_optimal", 2) is not None]
     for trial in solved[:MOST_TRIALS]:
-        found = {"weights": weights_sections(trial.result), **_walk_pages(trial, only=True)}
+        found = _walk_pages(trial)
         pages += [Page(key=key, sections=found[key], trial=trial.result.name) for key in found if key in keys]
     if not solved and "stills" in keys:
         first = source.trials[0]

@@ -65,7 +65,7 @@ def typst_source(name: str, pages: Sequence[Page], edition: Edition) -> str:
     parts = [style, f"#show: paper.with({shown}, signed: {str(bool(edition.signed_by)).lower()})", _heading(1, title)]
     trial = ""
     for number, page in enumerate(pages):
-        if number and (page.has_picture or page.trial != trial):
+        if number and (page.is_large or page.trial != trial):
             parts.append("#pagebreak(weak: true)")
         if page.trial != trial:
             parts.append(_heading(1, f"Trial: {page.trial}"))

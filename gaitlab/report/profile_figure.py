@@ -76,7 +76,7 @@ def _key(axes: Axes, with_cohort: bool) -> str:
         parts.append(rectangle(x, axes.bottom + 30.0, 14.0, 10.0, fill=colour))
         parts.append(text(name, x + 19.0, axes.bottom + 39.5, **{"class": "label"}))
     span = axes.y(0.0) - axes.y(GPS_MINIMAL_DIFFERENCE)
-    x, base = axes.right - 370.0, axes.bottom + 42.0
+    x, base = axes.right - 420.0, axes.bottom + 42.0
     parts.append(straight((x, base), (x, base - span), stroke="#222", stroke_width=3.0))
     least = f"height of the minimal clinically important difference: {GPS_MINIMAL_DIFFERENCE:g} deg"
     return "".join(parts) + text(least, x + 8.0, axes.bottom + 39.5, **{"class": "note"})

@@ -69,7 +69,7 @@ def _residuals(quality: dict[str, object]) -> list[Block]:
     worst = sorted(each.items(), key=lambda item: -(real(item[1]) or 0.0))
     rows = [(name, _millimetres(real(value))) for name, value in worst]
     header = ("marker", "rms [mm]")
-    return [total, *([table(header, rows, "Residual per marker, largest first")] if rows else [])]
+    return [total, *([table(header, rows, "Residual per marker, largest first", "narrow")] if rows else [])]
 
 
 def _millimetres(value: float | None) -> str:

@@ -24,7 +24,7 @@ def share_figure(
         names: One per criterion.
         marks: Events by name [% of the cycle].
     """
-    axes = Axes(left=70.0, top=46.0, width=900.0, height=230.0, x_range=(0.0, 100.0), y_range=(0.0, 100.0))
+    axes = Axes(left=70.0, top=58.0, width=900.0, height=230.0, x_range=(0.0, 100.0), y_range=(0.0, 100.0))
     part = np.clip(np.nan_to_num(share), 0.0, None)
     total = part.sum(axis=1, keepdims=True)
     part = 100.0 * np.divide(part, total, out=np.zeros_like(part), where=total > 0.0)
@@ -38,7 +38,7 @@ def share_figure(
         frame(axes, (0.0, 20.0, 40.0, 60.0, 80.0, 100.0), (0.0, 20.0, 40.0, 60.0, 80.0, 100.0)),
         clipped(axes, "".join(bands)),
         "".join(numbers),
-        *(_mark(axes, name, at) for name, at in (marks or {}).items()),
+        *(_mark(axes, name, at, row % 2) for row, (name, at) in enumerate((marks or {}).items())),
         text("share of the cost at that instant [%]", 70.0, 16.0, **{"class": "title"}),
         text("% of cycle", axes.right, axes.bottom + 30.0, **{"class": "note", "text_anchor": "end"}),
         _key(names, axes.bottom + 52.0),
@@ -60,10 +60,11 @@ def _number(axes: Axes, percent: np.ndarray, part: np.ndarray, upper: np.ndarray
     return circle + text(str(index + 1), x, y + 4.5, **{"class": "title", "text_anchor": "middle"})
 
 
-def _mark(axes: Axes, name: str, percent: float) -> str:
+def _mark(axes: Axes, name: str, percent: float, row: int) -> str:
+    """An event; neighbours stand in different rows, because they lie close together."""
     side = next((side for side in SIDE if name.startswith(side)), "")
-    x = axes.x(percent)
-    line = straight((x, axes.top), (x, axes.bottom), stroke="#222", stroke_width=1.2, stroke_dasharray="5 3")
+    x, top = axes.x(percent), axes.top - 14.0 * row
+    line = straight((x, top), (x, axes.bottom), stroke="#222", stroke_width=1.2, stroke_dasharray="5 3")
     return line + text(
         name, x, axes.top - 6.0, fill=SIDE.get(side, "#222"), **{"class": "tick", "text_anchor": "middle"}
     )

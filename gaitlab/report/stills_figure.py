@@ -13,11 +13,12 @@ from .walk_figure import heading
 from .walk_file import Walk
 
 _WIDTH, _LEFT, _TOP = 1000.0, 66.0, 52.0
-_METRE = 165.0
+_METRE = 195.0
 """Length of one metre on the figure; fixed, so that people can be compared."""
 _RISE = np.radians(15.0)
 """Height of the eye in the oblique view [rad]."""
 OPTIMAL = "#111111"
+OBLIQUE = "oblique"
 OPPOSITE: Mapping[Side, Side] = {"left": "right", "right": "left"}
 
 
@@ -73,7 +74,7 @@ def stills_figure(walk: Walk, moments: Sequence[Moment]) -> str | None:
     names = walk.names("segment_names")
     sides = tuple(side_of(names[child]) if child < len(names) else None for _, child in bones)
     width = (_WIDTH - _LEFT) / len(moments)
-    height = float(np.ptp(measured[:, :, 2][np.isfinite(measured[:, :, 2])])) * _METRE + 46.0
+    height = float(np.ptp(measured[:, :, 2][np.isfinite(measured[:, :, 2])])) * _METRE + 26.0
     parts = [_legend(optimal is not None)]
     for row, (view, axes) in enumerate(_views(heading(walk)).items()):
         floor = _TOP + (row + 1) * height + 4.0 * row
@@ -81,7 +82,8 @@ def stills_figure(walk: Walk, moments: Sequence[Moment]) -> str | None:
         turned = {"class": "heading", "text_anchor": "middle"}
         middle = floor - 0.45 * height
         parts.append(text(view, x, middle, transform=f"rotate(-90 {number(x)} {number(middle)})", **turned))
-        parts.append(straight((_LEFT, floor), (_WIDTH, floor), **{"class": "axis"}))
+        if view != OBLIQUE:
+            parts.append(straight((_LEFT, floor - 8.0), (_WIDTH, floor - 8.0), **{"class": "axis"}))
         for column, moment in enumerate(moments):
             frame = int(np.argmin(np.abs(walk.time - moment.time)))
             origin = np.append(measured[frame, 0, :2], float(np.nanmin(measured[:, :, 2])))
@@ -104,7 +106,7 @@ def _views(forward: np.ndarray) -> dict[str, np.ndarray]:
     return {
         "from the right": np.stack([forward, up]),
         "from ahead": np.stack([left, up]),
-        "oblique": np.stack([slant, np.cos(_RISE) * up + np.sin(_RISE) * into]),
+        OBLIQUE: np.stack([slant, np.cos(_RISE) * up + np.sin(_RISE) * into]),
     }
 
 
@@ -148,7 +150,7 @@ def _bones_optimal(skeleton: _Skeleton, place: tuple[float, float]) -> str:
 def _caption(moment: Moment, x: float, y: float) -> str:
     middle = {"text_anchor": "middle"}
     return text(moment.name, x, y, **{"class": "title"}, **middle) + text(
-        f"{moment.percent:.0f} % of the cycle, {moment.time:.2f} s", x, y + 16.0, **{"class": "note"}, **middle
+        f"{moment.percent:.0f} % of cycle, {moment.time:.2f} s", x, y + 16.0, **{"class": "note"}, **middle
     )
 
 

@@ -12,11 +12,11 @@ import numpy as np
 
 STYLE: Mapping[str, str] = {
     "text": "font-size:12px;fill:#1c232b",
-    ".title": "font-size:13px;font-weight:600",
-    ".heading": "font-size:14px;font-weight:600;fill:#5b6672",
-    ".tick": "font-size:11px;fill:#5b6672",
-    ".direction": "font-size:11px;fill:#5b6672",
-    ".note": "font-size:12px;fill:#5b6672",
+    ".title": "font-size:14px;font-weight:600",
+    ".heading": "font-size:14.5px;font-weight:600;fill:#5b6672",
+    ".tick": "font-size:12px;fill:#5b6672",
+    ".direction": "font-size:11.5px;fill:#5b6672",
+    ".note": "font-size:12.5px;fill:#5b6672",
     ".label": "font-size:13px",
     ".alert": "font-size:11px;font-weight:600;fill:#a85a00;paint-order:stroke;stroke:#fff;stroke-width:3px",
     ".panel": "fill:none;stroke:#9aa4ae;stroke-width:1",

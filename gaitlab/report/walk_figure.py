@@ -1,11 +1,12 @@
 """Pictures of the walk in time: measured and model-optimal joint angles, contact forces beside the force plates."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from .colours import CENTRE, SIDE, side_of
+from .colours import CENTRE, DASH, SIDE, side_of
+from .cycle_panels import leaves_scale, value_range
 from .svg import Axes, clipped, curve, figure, frame, rectangle, straight, text, ticks
 from .walk_file import Walk
 
@@ -14,6 +15,16 @@ _WIDTH, _COLUMN, _PANEL, _TOP = 1000.0, 325.0, 250.0, 58.0
 _JOINTS = {"pelvis": "Pelvis", "thigh": "Hip", "shank": "Knee", "foot": "Ankle", "trunk": "Trunk"}
 _AXES = ("about y (sagittal)", "about x (frontal)", "about z (transverse)")
 _SHADES = ("#eef1f4", "#ffffff")
+_MODEL_DASH = {"left": "2 2", "right": "7 2 1.5 2", None: "2 2"}
+"""Line style of the model's curves by side, different from the measured ones, so that no colour is needed."""
+Range = tuple[float, float]
+_PLANES: tuple[Range, Range, Range] = ((-50.0, 50.0), (-30.0, 30.0), (-40.0, 40.0))
+_SAGITTAL: Mapping[str, Range] = {"Hip": (-70.0, 50.0), "Knee": (-20.0, 100.0)}
+"""Fixed scales of the joints [deg]: sagittal, frontal, transverse, and where the first is another one."""
+_FORCES: tuple[Range, Range, Range] = ((-20.0, 180.0), (-60.0, 60.0), (-40.0, 40.0))
+"""Fixed scales of the forces [% of body weight]: vertical, fore-aft, lateral."""
+_NEWTON = 6.0
+"""The same where no mass is known, times this [N]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,9 +33,17 @@ class Trace:
 
     values: np.ndarray
     """Over time, unit of the panel, shape (n,)."""
-    colour: str
-    dashed: bool = False
-    width: float = 1.8
+    side: str | None
+    """None for the middle."""
+    modelled: bool = False
+
+    @property
+    def style(self) -> dict[str, object]:
+        """Colour of the side, line style of side and kind."""
+        colour = CENTRE if self.side is None else SIDE[self.side]
+        measured = "none" if self.side is None else DASH[self.side]
+        dash = _MODEL_DASH[self.side] if self.modelled else measured
+        return {"stroke": colour, "stroke_width": 1.6 if self.modelled else 2.0, "stroke_dasharray": dash}
 
 
 def modelled_part(walk: Walk) -> Walk:
@@ -52,9 +71,10 @@ def joints_figure(walk: Walk) -> str | None:
             traces = [_trace(measured, column, side, False) for side, column in columns]
             if optimal is not None and optimal.shape == measured.shape:
                 traces += [_trace(optimal, column, side, True) for side, column in columns]
-            axes = _axes(walk.time, row, axis, traces, 115.0, 155.0)
-            parts.append(_panel(walk, axes, traces, f"{title} {words}"))
-    legend = _legend("measured", "model-optimal", SIDE["left"])
+            scale = _SAGITTAL.get(title, _PLANES[0]) if axis == 0 else _PLANES[axis]
+            axes = _axes(walk.time, (row, axis), scale, 115.0, 155.0)
+            parts.append(_panel(walk, axes, traces, f"{title} {words} [deg]"))
+    legend = _legend("measured", "model-optimal")
     height = _TOP + 155.0 * len(rows) + 14.0
     return figure(_WIDTH, height, legend + "".join(parts), "Measured and model-optimal joint angles")
 
@@ -71,9 +91,8 @@ def _joint_rows(names: Sequence[str], n_q: int) -> list[tuple[str, list[tuple[st
     return list(rows.items())
 
 
-def _trace(q: np.ndarray, column: int, side: str | None, dashed: bool) -> Trace:
-    colour = CENTRE if side is None else SIDE[side]
-    return Trace(values=np.degrees(q[:, column]), colour=colour, dashed=dashed, width=1.6 if dashed else 2.0)
+def _trace(q: np.ndarray, column: int, side: str | None, modelled: bool) -> Trace:
+    return Trace(values=np.degrees(q[:, column]), side=side, modelled=modelled)
 
 
 def forces_figure(walk: Walk, mass: float | None) -> str | None:
@@ -96,9 +115,10 @@ def forces_figure(walk: Walk, mass: float | None) -> str | None:
     for column, (title, direction) in enumerate(directions):
         traces = _plate_traces(plates, direction * factor)
         traces += _model_traces(model, walk.names("contact_names"), direction * factor)
-        axes = _axes(walk.time, 0, column, traces, 170.0, 170.0)
+        low, high = (end * (1.0 if mass else _NEWTON) for end in _FORCES[column])
+        axes = _axes(walk.time, (0, column), (low, high), 170.0, 170.0)
         parts.append(_panel(walk, axes, traces, f"{title} [{unit}]"))
-    legend = _legend("force plates", "model, sum over the contact points of a foot", CENTRE)
+    legend = _forces_legend()
     return figure(_WIDTH, _TOP + 170.0 + 40.0, legend + "".join(parts), "Contact forces of the model and of the plates")
 
 
@@ -117,7 +137,7 @@ def heading(walk: Walk) -> np.ndarray:
 def _plate_traces(plates: np.ndarray | None, direction: np.ndarray) -> list[Trace]:
     if plates is None:
         return []
-    return [Trace(values=plates[:, k] @ direction, colour=CENTRE, width=1.8) for k in range(plates.shape[1])]
+    return [Trace(values=plates[:, k] @ direction, side=None) for k in range(plates.shape[1])]
 
 
 def _model_traces(model: np.ndarray | None, names: Sequence[str], direction: np.ndarray) -> list[Trace]:
@@ -127,52 +147,51 @@ def _model_traces(model: np.ndarray | None, names: Sequence[str], direction: np.
     traces = list[Trace]()
     for side in dict.fromkeys(sides[: model.shape[1]]):
         chosen = [k for k in range(model.shape[1]) if sides[k] == side]
-        colour = "#8a8a8a" if side is None else SIDE[side]
-        traces.append(Trace(values=model[:, chosen].sum(axis=1) @ direction, colour=colour, dashed=True, width=2.0))
+        traces.append(Trace(values=model[:, chosen].sum(axis=1) @ direction, side=side, modelled=True))
     return traces
 
 
-def _axes(time: np.ndarray, row: int, column: int, traces: Sequence[Trace], height: float, pitch: float) -> Axes:
-    values = np.concatenate([trace.values for trace in traces]) if traces else np.zeros(1)
-    finite = values[np.isfinite(values)]
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    margin = max(0.08 * (high - low), 1.0)
+def _axes(time: np.ndarray, place: tuple[int, int], scale: Range, height: float, pitch: float) -> Axes:
+    row, column = place
     last = float(time[-1]) if time[-1] > time[0] else float(time[0]) + 1.0
-    place = {"left": 50.0 + _COLUMN * column, "top": _TOP + pitch * row, "width": _PANEL, "height": height}
-    return Axes(**place, x_range=(float(time[0]), last), y_range=(low - margin, high + margin))
+    corner = {"left": 50.0 + _COLUMN * column, "top": _TOP + pitch * row}
+    return Axes(**corner, width=_PANEL, height=height, x_range=(float(time[0]), last), y_range=scale)
 
 
 def _panel(walk: Walk, axes: Axes, traces: Sequence[Trace], title: str) -> str:
-    lines = [curve(axes, walk.time, t.values, stroke=t.colour, stroke_width=t.width, **_dash(t.dashed)) for t in traces]
+    lines = [curve(axes, walk.time, trace.values, **trace.style) for trace in traces]
     return (
         _phases(walk, axes)
         + frame(axes, ticks(*axes.x_range, 5), ticks(*axes.y_range, 4))
         + clipped(axes, "".join(lines))
         + text(title, axes.left, axes.top - 7.0, **{"class": "title"})
         + text("s", axes.right + 15.0, axes.bottom + 15.0, **{"class": "tick"})
+        + leaves_scale(axes, value_range([trace.values for trace in traces]), 0)
     )
 
 
-def _legend(solid: str, dashed: str, solid_colour: str) -> str:
+def _legend(measured: str, modelled: str) -> str:
+    entries = [
+        (f"{words}, {side}", Trace(values=np.zeros(0), side=side, modelled=model))
+        for words, model in ((measured, False), (modelled, True))
+        for side in SIDE
+    ]
+    return _keys(entries)
+
+
+def _forces_legend() -> str:
+    none = np.zeros(0)
+    entries = [(f"model, sum over the {side} foot", Trace(values=none, side=side, modelled=True)) for side in SIDE]
+    return _keys([("force plates", Trace(values=none, side=None)), *entries])
+
+
+def _keys(entries: Sequence[tuple[str, Trace]]) -> str:
     parts, x = list[str](), 50.0
-    for words, colour, dash in (
-        (solid, solid_colour, False),
-        (dashed, SIDE["left"], True),
-        ("left", SIDE["left"], None),
-        ("right", SIDE["right"], None),
-    ):
-        if dash is None:
-            parts.append(rectangle(x, 9.0, 14.0, 12.0, fill=colour))
-        else:
-            parts.append(straight((x, 15.0), (x + 26.0, 15.0), stroke=colour, stroke_width=2.0, **_dash(dash)))
-        width = 14.0 if dash is None else 26.0
-        parts.append(text(words, x + width + 7.0, 19.5, **{"class": "label"}))
-        x += width + 7.0 + 7.0 * len(words) + 24.0
+    for words, trace in entries:
+        parts.append(straight((x, 15.0), (x + 36.0, 15.0), **trace.style))
+        parts.append(text(words, x + 44.0, 19.5, **{"class": "label"}))
+        x += 70.0 + 8.5 * len(words)
     return "".join(parts)
-
-
-def _dash(dashed: bool) -> dict[str, str]:
-    return {"stroke_dasharray": "5 3"} if dashed else {}
 
 
 def phase_spans(walk: Walk) -> list[tuple[str, float, float]]:
@@ -183,7 +202,7 @@ def phase_spans(walk: Walk) -> list[tuple[str, float, float]]:
     words = [str(word) for word in phase]
     starts = [0, *(k for k in range(1, len(words)) if words[k] != words[k - 1])]
     ends = [*starts[1:], len(words) - 1]
-    return [(words[a], float(walk.time[a]), float(walk.time[b])) for a, b in zip(starts, ends, strict=True)]
+    return [(words[a], float(walk.time[a]), float(walk.time[b])) for a, b in zip(starts, ends, strict=True) if b > a]
 
 
 def _phases(walk: Walk, axes: Axes) -> str:

@@ -20,7 +20,7 @@ def walk_sections(result: Result, walk: Walk | None, why: str) -> tuple[Section,
     part = modelled_part(walk)
     converged = result.weights is None or result.weights.converged
     mark = None if converged else paragraph(NOT_CONVERGED, "stamp")
-    return (section(title, mark, *_joints(part)), _forces(result, part), _share(result, walk))
+    return (section(title, mark, *_joints(part)), _forces(result, part))
 
 
 def _joints(walk: Walk) -> list[Block | None]:
@@ -53,8 +53,11 @@ def _forces(result: Result, walk: Walk) -> Section:
     return section(title, picture(drawn), paragraph(words, "note"), *absent)
 
 
-def _share(result: Result, walk: Walk) -> Section:
+def share_section(result: Result, walk: Walk | None, why: str) -> Section:
+    """Share of each criterion in the cost over the cycle; `why` explains an absent walk."""
     title = "Criteria over the cycle"
+    if walk is None:
+        return section(title, missing("share of each criterion over the cycle", why))
     share = walk.numbers("criteria_share", 2)
     if share is None:
         return section(title, missing("share of each criterion over the cycle", "walk.npz has no criteria_share"))

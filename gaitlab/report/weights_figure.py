@@ -10,6 +10,8 @@ from .svg import Axes, clipped, figure, frame, rectangle, straight, text, ticks
 from .wording import spoken
 
 _WIDTH, _BAR, _GAP, _LABEL = 1000.0, 20.0, 14.0, 270.0
+WORST_FIT = 12.0
+"""Upper end of the fixed scale of the fit [deg]."""
 
 
 def weights_figure(weights: Weights) -> str:
@@ -36,16 +38,17 @@ def stride_weights(weights: Weights) -> list[dict[str, float]]:
 def fit_figure(found: float, others: Mapping[str, float]) -> str:
     """Draw the fit [rad] with the weights found and with other weights, best first, in degrees."""
     bars = sorted([("weights found", found), *others.items()], key=lambda item: item[1])
-    high = 1.15 * float(np.degrees(max(rms for _, rms in bars))) or 1.0
-    axes = _bar_axes(len(bars), high)
-    parts = [_scale(axes, ticks(0.0, high, 5), "rms difference, model to measured [deg]; shorter is better")]
+    axes = _bar_axes(len(bars), WORST_FIT)
+    parts = [_scale(axes, ticks(0.0, WORST_FIT, 6), "rms difference, model to measured [deg]; shorter is better")]
     for index, (name, rms) in enumerate(bars):
         y = _row(axes, index)
         mine = name == "weights found"
         fill = criterion_colour(0) if mine else "#b9c0c7"
         parts.append(_name(axes, y, spoken(name), "title" if mine else "label"))
-        parts.append(rectangle(axes.left, y, axes.x(float(np.degrees(rms))) - axes.left, _BAR, fill=fill))
-        parts.append(text(f"{np.degrees(rms):.2f}", axes.x(float(np.degrees(rms))) + 6, y + 14.5, **{"class": "label"}))
+        degrees = float(np.degrees(rms))
+        end = axes.x(min(degrees, WORST_FIT))
+        parts.append(rectangle(axes.left, y, end - axes.left, _BAR, fill=fill))
+        parts.append(_value(end, y, f"{degrees:.2f}" + (" ↑" if degrees > WORST_FIT else "")))
     return figure(_WIDTH, axes.bottom + 44.0, "".join(parts), "Fit with the weights found and with others")
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from synthetic_output import MASS, walk_arrays
 
-from gaitlab.report.walk_figure import forces_figure, heading, joints_figure, modelled_part, phase_spans
+from gaitlab.report.walk_figure import Trace, forces_figure, heading, joints_figure, modelled_part, phase_spans
 from gaitlab.report.walk_file import Walk
 
 
@@ -34,8 +34,22 @@ def test_forces_have_a_unit(mass, unit):
 
 def test_joints_are_named_after_their_segments():
     drawn = joints_figure(walk())
-    assert all(f">{joint} about y (sagittal)<" in drawn for joint in ("Pelvis", "Hip", "Knee", "Ankle"))
-    assert drawn.count("stroke-dasharray") > drawn.count("about")
+    assert all(f">{joint} about y (sagittal) [deg]<" in drawn for joint in ("Pelvis", "Hip", "Knee", "Ankle"))
+
+
+def test_scales_do_not_follow_the_data():
+    small, large = (joints_figure(walk(q_measured=np.full((241, 24), v), q_optimal=np.zeros(0))) for v in (0.01, 2.0))
+    assert small.count('class="tick"') == large.count('class="tick"')
+    assert "leaves scale: 115 to 115" in large and "leaves scale" not in small
+
+
+def test_side_and_kind_of_a_curve_are_told_without_colour():
+    styles = {
+        (side, model): Trace(values=np.zeros(0), side=side, modelled=model).style["stroke_dasharray"]
+        for side in ("left", "right")
+        for model in (False, True)
+    }
+    assert len(set(styles.values())) == 4
 
 
 def test_without_forces_there_is_no_picture():
