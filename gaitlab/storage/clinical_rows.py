@@ -4,7 +4,7 @@ from datetime import date, datetime
 from enum import StrEnum
 from uuid import UUID
 
-from sqlalchemy import ForeignKey, Index
+from sqlalchemy import ForeignKey, Index, func
 from sqlalchemy.orm import Mapped, mapped_column
 
 from .schema import Bytes, Digest, Identified, Json, Row, Versioned, enum_column, now
@@ -48,7 +48,7 @@ class StoredFile(Row):
 
     sha256: Mapped[Digest] = mapped_column(primary_key=True)
     size: Mapped[Bytes]
-    created_at: Mapped[datetime] = mapped_column(default_factory=now)
+    created_at: Mapped[datetime] = mapped_column(server_default=func.now(), default_factory=now)
 
 
 class Patient(Identified, Versioned, Row):

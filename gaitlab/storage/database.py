@@ -39,6 +39,7 @@ class Database:
         engine = create_engine(
             parts.set(drivername="postgresql+psycopg"),
             pool_pre_ping=True,
+            hide_parameters=True,
             pool_size=connections,
             max_overflow=connections,
         )

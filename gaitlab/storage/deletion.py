@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 from uuid import UUID
 
 from sqlalchemy import CompoundSelect, delete, select, text, union
@@ -133,7 +134,7 @@ def _jobs_that_read(session: Session, sessions: Sequence[UUID], recordings: Sequ
     return found
 
 
-def _contents(sessions: Sequence[UUID], jobs: Sequence[UUID]) -> CompoundSelect[tuple[str]]:
+def _contents(sessions: Sequence[UUID], jobs: Sequence[UUID]) -> CompoundSelect[Any]:
     results = select(Result.id).where(Result.job_id.in_(jobs))
     uploads = select(Upload.id).where(Upload.session_id.in_(sessions))
     reports = ReportVersion.session_id.in_(sessions)

@@ -84,7 +84,8 @@ def _files(rows: dict[str, Sequence[Row]]) -> Iterator[tuple[str, str]]:
     visits = {row.id: f"{row.visited_on}-{row.id.hex[:8]}" for row in rows["sessions"] if isinstance(row, GaitSession)}
     named = [(row, _path(row)) for part in rows.values() for row in part]
     for row, path in named:
-        folder = f"sessions/{visits[session_id]}" if (session_id := getattr(row, "session_id", None)) in visits else ""
+        session_id: UUID | None = getattr(row, "session_id", None)
+        folder = f"sessions/{visits[session_id]}" if session_id is not None and session_id in visits else ""
         for column in ("sha256", "model_sha256", "html_sha256", "pdf_sha256"):
             digest = getattr(row, column, None)
             if path and digest:

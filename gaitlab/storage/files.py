@@ -130,6 +130,12 @@ class FileStore:
         """Remove what `names` listed."""
         self._objects.delete(name)
 
+    def clear_spool(self, before: float) -> None:
+        """Remove what processes that were killed left half written before a time [s since 1970]."""
+        for path in self._spool.iterdir():
+            if path.stat().st_mtime < before:
+                path.unlink(missing_ok=True)
+
 
 class _Tee:
     """Passes pieces on, and tells a function of each; counts bytes."""

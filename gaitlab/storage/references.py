@@ -58,6 +58,7 @@ def collect_garbage(database: Database, store: FileStore, grace: float = GRACE) 
         if name not in names and written < time.time() - grace:
             store.delete_object(name)
             removed += 1
+    store.clear_spool(time.time() - grace)
     return removed
 
 

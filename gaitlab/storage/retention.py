@@ -1,6 +1,7 @@
 """How long things are kept: rules that an administrator sets, applied by a worker once a day."""
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
@@ -97,7 +98,9 @@ def apply_retention(database: Database, store: FileStore) -> Applied:
         removed = {subject: _remove(session, subject, days[subject]) for subject in ROWS}
         removed["uploads"] = _abandon_uploads(session)
     for patient_id in due:
-        delete_patient(database, store, patient_id, SYSTEM)
+        # Another worker may have been faster.
+        with suppress(NotFound):
+            delete_patient(database, store, patient_id, SYSTEM)
     return Applied(removed=removed | {"patients": len(due)}, files=collect_garbage(database, store))
 
 

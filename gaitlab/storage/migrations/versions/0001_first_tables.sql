@@ -41,7 +41,7 @@ CREATE TABLE retention_rules (
 CREATE TABLE stored_files (
     sha256 CHAR(64) NOT NULL,
     size BIGINT NOT NULL,
-    created_at TIMESTAMP WITH TIME ZONE NOT NULL,
+    created_at TIMESTAMP WITH TIME ZONE DEFAULT now() NOT NULL,
     CONSTRAINT pk_stored_files PRIMARY KEY (sha256)
 );
 
