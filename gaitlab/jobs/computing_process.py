@@ -25,8 +25,6 @@ OUTCOME = "outcome.json"
 PARENT_DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of prctl(2)."""
 PACKAGES = ("numpy", "scipy", "casadi", "pin", "ezc3d")
-NICENESS = 10
-"""The web server on the same machine comes first."""
 INTERVAL = 0.2
 """Shortest time between two reports of the same stage [s]."""
 
@@ -55,7 +53,7 @@ def main() -> None:
     """Read the work, limit this process, compute, write the outcome."""
     described: dict[str, Any] = json.load(sys.stdin)
     _die_with(described["parent"])
-    _limit(described["memory"])
+    _limit(described["memory"], described["niceness"])
     work = Work(
         kind=described["kind"],
         settings=described["settings"],
@@ -91,10 +89,10 @@ def _die_with(parent: int) -> None:
         os._exit(1)
 
 
-def _limit(memory: int) -> None:
+def _limit(memory: int, niceness: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    os.nice(NICENESS)
+    os.nice(niceness)
 
 
 if __name__ == "__main__":

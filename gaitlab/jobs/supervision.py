@@ -41,6 +41,8 @@ class Limits:
     seconds: float
     memory: int
     """Address space of the process [bytes]."""
+    niceness: int = 0
+    """How far it steps back behind other processes, 0 to 19."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,6 +113,7 @@ async def _tell(process: asyncio.subprocess.Process, work: Work, limits: Limits)
         "inputs": [dict(each) for each in work.inputs],
         "folder": str(work.folder),
         "memory": limits.memory,
+        "niceness": limits.niceness,
         "parent": os.getpid(),
     }
     if process.stdin is not None:

@@ -25,7 +25,7 @@ from ..storage.settings import Settings
 from . import metrics
 from .claims import Claim, beat, claim, end, requeue
 from .computing_process import OUTCOME
-from .request import Work
+from .request import QUEUES, SOLVE, Work
 from .supervision import Ended, Limits, Verdict, Watch, run_process
 
 Value = TypeVar("Value")
@@ -107,7 +107,10 @@ class Runner:
                 log.warning("no heartbeat: the database is away", reason=type(error.orig).__name__)
                 return Verdict.GO_ON
 
-        limits = Limits(seconds=self.settings.job_seconds, memory=self.settings.job_memory)
+        # Long computations step back behind the web server and the look into uploads.
+        niceness = self.settings.job_niceness if QUEUES[JobKind(work.kind)] == SOLVE else 0
+        settings = self.settings
+        limits = Limits(seconds=settings.job_seconds, memory=settings.job_memory, niceness=niceness)
         return await run_process(work, limits, Watch(progress=latest.append, ask=ask))
 
     async def _conclude(self, claimed: Claim, job: Job, work: Work, ended: Ended) -> None:

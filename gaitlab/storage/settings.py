@@ -67,6 +67,8 @@ class Settings(BaseSettings):
     """Time-out of one job [s]."""
     job_memory: int = Field(default=16_000_000_000, gt=0)
     """Address space of a job's process [bytes]."""
+    job_niceness: int = Field(default=10, ge=0, le=19)
+    """How far analyses step back behind the web server on the same machine."""
     attempts: int = Field(default=3, ge=1)
     """Times that a job may lose its process or its worker before it counts as failed."""
     heartbeat_seconds: float = Field(default=5.0, gt=0)
