@@ -1,5 +1,6 @@
 """A reference cohort from a laboratory's own results of able-bodied people."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -42,6 +43,8 @@ class _Person:
     """The same of each side, shapes (101,)."""
     spatiotemporal: dict[str, float]
     normalised: dict[str, float]
+    weights: dict[str, float]
+    """Of the criteria; empty unless they are certified."""
 
 
 def build_cohort(documents: Sequence[Document], settings: CohortSettings) -> tuple[ReferenceCohort, tuple[str, ...]]:
@@ -111,7 +114,14 @@ def _person(document: Document) -> _Person:
         sides=sides,
         spatiotemporal=_means([entry.mean for entry in entries]),
         normalised=_means([entry.normalised for entry in entries]),
+        weights=_certified_weights(document),
     )
+
+
+def _certified_weights(document: Document) -> dict[str, float]:
+    found = document.weights
+    solved = found is not None and found.solver.status == "solved"
+    return {criterion.name: criterion.weight for criterion in found.criteria} if found is not None and solved else {}
 
 
 def _mean_of_sides(sides: Sequence[Mapping[str, np.ndarray]], names: Sequence[str]) -> dict[str, np.ndarray]:
@@ -152,7 +162,17 @@ def _bin(name: str, people: Sequence[_Person]) -> SpeedBin:
         normalised=_values([person.normalised for person in people]),
         gvs={curve: value_of(values) for curve, values in scores.items() if len(values) >= FEWEST},
         gps=value_of(totals) if len(totals) >= FEWEST else None,
+        weights=_values(_same_criteria(people)),
     )
+
+
+def _same_criteria(people: Sequence[_Person]) -> list[dict[str, float]]:
+    """Weights of those persons who share the most frequent choice of criteria; others cannot be averaged with them."""
+    choices = Counter(frozenset(person.weights) for person in people if person.weights)
+    if not choices:
+        return []
+    most = choices.most_common(1)[0][0]
+    return [person.weights for person in people if frozenset(person.weights) == most]
 
 
 def _bands(people: Sequence[dict[str, np.ndarray]]) -> dict[str, ReferenceBand]:

@@ -52,6 +52,8 @@ class SpeedBin(msgspec.Struct, frozen=True, kw_only=True):
     gvs: dict[str, ReferenceValue] = {}
     """Gait variable scores of the cohort's own persons [deg]: how far one of them is from their mean."""
     gps: ReferenceValue | None = None
+    weights: dict[str, ReferenceValue] = {}
+    """Weights of the criteria, all of one choice of criteria; empty where fewer than two persons have some."""
 
 
 class ReferenceCohort(msgspec.Struct, frozen=True, kw_only=True):

@@ -59,6 +59,8 @@ class ReferenceEntry(msgspec.Struct, frozen=True, kw_only=True):
     """Dimensionless values are multiplied out with this person's mean leg length."""
     gvs: dict[str, ReferenceValue] = {}
     gps: ReferenceValue | None = None
+    weights: dict[str, ReferenceValue] = {}
+    """Weights of the criteria, where the cohort has some."""
 
 
 class SideScores(msgspec.Struct, frozen=True, kw_only=True):

@@ -179,4 +179,5 @@ def _reference(
         spatiotemporal=dict(expected_distances(part, leg_length, GRAVITY)),
         gvs=part.gvs,
         gps=part.gps,
+        weights=part.weights,
     )

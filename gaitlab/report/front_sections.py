@@ -11,7 +11,7 @@ from .quality_sections import warnings_section
 from .result import Result, mapping, real, sequence
 from .score_sections import norms_of
 from .source import Source
-from .wording import CAVEAT, weights_in_words
+from .wording import CAVEAT, cohort_weights, weights_in_words
 
 _SHOWN = ("speed_m_per_s", "cadence_steps_per_min", "step_length_m", "step_width_m", "foot_off_percent")
 _Entry = JointRange | Strength | Spasticity
@@ -24,7 +24,9 @@ def front_sections(source: Source) -> tuple[Section, ...]:
     absent = absences(source)
     weights = overall.weights
     said = (
-        [paragraph(weights_in_words(weights)[0]), paragraph(CAVEAT, "caveat")] if weights and weights.criteria else []
+        [paragraph(weights_in_words(weights, cohort_weights(overall))[0]), paragraph(CAVEAT, "caveat")]
+        if weights and weights.criteria
+        else []
     )
     results = [("", overall), *((trial.result.name, trial.result) for trial in source.trials if source.several)]
     return (

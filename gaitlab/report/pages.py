@@ -1,6 +1,6 @@
 """The pages of a report, in order: what each shows is decided here, how it looks by the writers of HTML and PDF."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from ..errors import OutputError
 from .blocks import Page, Section, missing, section
@@ -56,21 +56,21 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
     if unknown or not keys:
         raise OutputError(f"pages '{', '.join(unknown)}' do not exist; available: {', '.join(KEYS)}")
     overall = source.overall
-    sections: dict[str, tuple[Section, ...]] = {
-        "front": front_sections(source),
-        "examination": examination_sections(source),
-        "kinematics": (kinematics_section(overall),),
-        "consistency": (_every_cycle(source), strides_section(overall)),
-        "kinetics": kinetics_sections(overall),
-        "emg": emg_sections(overall),
-        "spatiotemporal": (spatiotemporal_section(overall),),
-        "scores": scores_sections(overall),
-        "weights": weights_sections(overall),
+    makers: dict[str, Callable[[], tuple[Section, ...]]] = {
+        "front": lambda: front_sections(source),
+        "examination": lambda: examination_sections(source),
+        "kinematics": lambda: (kinematics_section(overall),),
+        "consistency": lambda: (_every_cycle(source), strides_section(overall)),
+        "kinetics": lambda: kinetics_sections(overall),
+        "emg": lambda: emg_sections(overall),
+        "spatiotemporal": lambda: (spatiotemporal_section(overall),),
+        "scores": lambda: scores_sections(overall),
+        "weights": lambda: weights_sections(overall),
         **({} if source.several else _walk_pages(source.trials[0])),
-        "quality": (*quality_sections(overall), events_section(overall), body_section(overall)),
-        "provenance": provenance_sections(source, program),
+        "quality": lambda: (*quality_sections(overall), events_section(overall), body_section(overall)),
+        "provenance": lambda: provenance_sections(source, program),
     }
-    common = [Page(key=key, sections=sections[key]) for key in KEYS if key in keys and key in sections]
+    common = [Page(key=key, sections=makers[key]()) for key in KEYS if key in keys and key in makers]
     return (*common, *_trial_pages(source, keys))
 
 
@@ -79,16 +79,20 @@ def _every_cycle(source: Source) -> Section:
     return consistency_section(source.overall, [(trial.result, trial.angles) for trial in source.trials], why)
 
 
-def _walk_pages(trial: Trial) -> dict[str, tuple[Section, ...]]:
-    """Pages on the weights and the walk in time of one trial."""
+def _walk_pages(trial: Trial) -> dict[str, Callable[[], tuple[Section, ...]]]:
+    """Makers of the pages on the weights and the walk in time of one trial."""
     result, why = trial.result, trial.problems.get("walk", "")
-    words, *rest = weights_sections(result)
-    share = [share_section(result, trial.walk, why)] if rest else []
     return {
-        "weights": (words, *share, *rest),
-        "walk": walk_sections(result, trial.walk, why),
-        "stills": (stills_section(result, trial.walk, why),),
+        "weights": lambda: _weights_page(trial),
+        "walk": lambda: walk_sections(result, trial.walk, why),
+        "stills": lambda: (stills_section(result, trial.walk, why),),
     }
+
+
+def _weights_page(trial: Trial) -> tuple[Section, ...]:
+    words, *rest = weights_sections(trial.result)
+    share = [share_section(trial.result, trial.walk, trial.problems.get("walk", ""))] if rest else []
+    return (words, *share, *rest)
 
 
 def _trial_pages(source: Source, keys: Sequence[str]) -> list[Page]:
@@ -99,7 +103,7 @@ def _trial_pages(source: Source, keys: Sequence[str]) -> list[Page]:
     solved = [t for t in source.trials if t.walk is not None and t.walk.numbers("q_optimal", 2) is not None]
     for trial in solved[:MOST_TRIALS]:
         found = _walk_pages(trial)
-        pages += [Page(key=key, sections=found[key], trial=trial.result.name) for key in found if key in keys]
+        pages += [Page(key=key, sections=found[key](), trial=trial.result.name) for key in found if key in keys]
     if not solved and "stills" in keys:
         first = source.trials[0]
         stills = stills_section(first.result, first.walk, first.problems.get("walk", ""))

@@ -8,7 +8,7 @@ from .blocks import Block, Paragraph, Section, bullets, missing, paragraph, pict
 from .formatting import ABSENT, fixed, label, plain, rows_of
 from .result import Result, Weights, mapping, real, reals, sequence
 from .weights_figure import fit_figure, weights_figure
-from .wording import CAVEAT, spoken, weights_in_words
+from .wording import CAVEAT, cohort_weights, spoken, weights_in_words
 
 NOT_CONVERGED = "Not converged: what follows is the last iterate, not a result."
 _SOLVER_WORDS = {
@@ -34,7 +34,7 @@ def weights_sections(result: Result) -> tuple[Section, ...]:
     notes = [str(note) for note in sequence(weights.document.get("notes"))]
     parts = [
         None if weights.converged else paragraph(NOT_CONVERGED, "stamp"),
-        bullets(weights_in_words(weights), "words"),
+        paragraph(" ".join(weights_in_words(weights, cohort_weights(result)))),
         paragraph(CAVEAT, "caveat"),
         picture(weights_figure(weights)),
         _dots_note(weights),

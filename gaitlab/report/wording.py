@@ -1,10 +1,11 @@
 """The weights in words: sentences made from the numbers and from nothing else."""
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
 
-from .result import Criterion, Weights
+from .result import Criterion, Result, Weights, mapping, real
 
 CAVEAT = (
     "A weight is a share of a model's cost, not a cause: it says which mix of criteria makes this model walk most "
@@ -22,11 +23,25 @@ def _percent(value: float) -> str:
     return f"{100.0 * value:.0f} %"
 
 
-def _share(criterion: Criterion) -> str:
-    weight = _percent(criterion.weight or 0.0)
-    return f"{spoken(criterion.name)} {weight}" + (
-        f" (sd {_percent(criterion.sd)})" if criterion.sd is not None else ""
-    )
+def _share(criterion: Criterion, reference: Mapping[str, tuple[float, float]]) -> str:
+    """One criterion with its standard deviation and, where there is one, the cohort's mean +- 1 SD."""
+    words = f"{spoken(criterion.name)} {_percent(criterion.weight or 0.0)}"
+    notes = [f"sd {_percent(criterion.sd)}"] if criterion.sd is not None else []
+    if criterion.name in reference:
+        mean, sd = reference[criterion.name]
+        low, high = max(mean - sd, 0.0), min(mean + sd, 1.0)
+        notes.append(f"reference cohort {100.0 * low:.0f}-{_percent(high)}")
+    return words + (f" ({'; '.join(notes)})" if notes else "")
+
+
+def cohort_weights(result: Result) -> dict[str, tuple[float, float]]:
+    """Mean and standard deviation of the reference cohort's weights, if it has the same criteria as this result."""
+    reference = mapping(result.part("scores").get("reference"))
+    stored = {name: mapping(value) for name, value in mapping(reference.get("weights")).items()}
+    pairs = {name: (real(value.get("mean")), real(value.get("sd"))) for name, value in stored.items()}
+    found = {name: (mean, sd) for name, (mean, sd) in pairs.items() if mean is not None and sd is not None}
+    criteria = set[str]() if result.weights is None else {criterion.name for criterion in result.weights.criteria}
+    return found if set(found) == criteria else {}
 
 
 def _ranked(weights: Weights) -> list[tuple[int, Criterion]]:
@@ -99,8 +114,13 @@ def _angle(rms: float) -> str:
     return f"{np.degrees(rms):.1f} deg ({rms:.3f} rad)"
 
 
-def weights_in_words(weights: Weights) -> list[str]:
-    """Sentences on shares, order, identifiability and fit, or on why there are none; the caveat stands apart."""
+def weights_in_words(weights: Weights, reference: Mapping[str, tuple[float, float]] | None = None) -> list[str]:
+    """Sentences on shares, order, identifiability and fit, or on why there are none; the caveat stands apart.
+
+    Args:
+        weights: Of one result.
+        reference: Mean and standard deviation of a reference cohort's weights by criterion, as `cohort_weights` says.
+    """
     if not weights.converged:
         state = spoken(weights.status or "not stated")
         return [
@@ -110,5 +130,8 @@ def weights_in_words(weights: Weights) -> list[str]:
     sentences = list[str]()
     ranked = [criterion for _, criterion in _ranked(weights)]
     if ranked:
-        sentences.append(f"Shares of the model's cost: {', '.join(_share(criterion) for criterion in ranked)}.")
+        shares = ", ".join(_share(criterion, reference or {}) for criterion in ranked)
+        sentences.append(f"Shares of the modelled cost: {shares}.")
+    if not reference:
+        sentences.append("No reference cohort for weights: none with these criteria applies.")
     return sentences + _order(weights) + _at_bound(weights) + _unidentifiable(weights) + _fit(weights)

@@ -118,3 +118,20 @@ def test_speed_bins_divide_persons_and_small_ones_are_told():
 def test_one_person_is_no_cohort():
     with pytest.raises(InvalidReference, match="1 of the 2 persons"):
         build_cohort([shifted(0.0)], SETTINGS)
+
+
+def with_weights(status="solved", **weights):
+    found = msgspec.to_builtins(shifted(0.0))
+    found["weights"]["criteria"] = [
+        {"name": name, "weight": weight, "sd": None, "identifiable": True} for name, weight in weights.items()
+    ]
+    found["weights"]["solver"]["status"] = status
+    return msgspec.convert(found, Document)
+
+
+def test_weights_of_a_cohort_are_certified_and_of_one_choice_of_criteria():
+    documents = [with_weights(a=0.2, b=0.8), with_weights(a=0.4, b=0.6), with_weights(a=1.0)]
+    documents.append(with_weights(a=0.9, b=0.1, status="not_converged"))
+    part = build_cohort(documents, SETTINGS)[0].bins[0]
+    assert part.n == 4 and set(part.weights) == {"a", "b"}
+    assert (part.weights["a"].mean, part.weights["a"].sd) == pytest.approx((0.3, np.sqrt(0.02)))

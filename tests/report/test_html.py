@@ -13,6 +13,11 @@ ADDRESSES = ("src", "href", "xlink:href", "action", "data", "poster", "srcset")
 HOSTILE = '</style><script>alert(1)</script><img src=x onerror="alert(2)">&amp;'
 
 
+@pytest.fixture(scope="module")
+def words_of_one_walk(tmp_path_factory):
+    return Page(render(write_output(tmp_path_factory.mktemp("out"), document(), walk_arrays()))).text
+
+
 def test_the_synthetic_document_keeps_the_contract(one_walk):
     assert read_document(one_walk / "result.json").weights is not None
 
@@ -64,8 +69,8 @@ def test_all_nine_curves_are_drawn_for_both_sides(one_walk):
         "double support 0.40–0.80 s",
     ],
 )
-def test_the_page_says(one_walk, words):
-    assert words in Page(render(one_walk)).text
+def test_the_page_says(words_of_one_walk, words):
+    assert words in words_of_one_walk
 
 
 def test_a_result_that_did_not_converge_is_marked(tmp_path):
@@ -75,8 +80,8 @@ def test_a_result_that_did_not_converge_is_marked(tmp_path):
     assert text.count("Not converged: what follows is the last iterate, not a result.") >= 2
 
 
-def test_a_converged_result_is_not_marked(one_walk):
-    assert "not converged" not in Page(render(one_walk)).text.lower()
+def test_a_converged_result_is_not_marked(words_of_one_walk):
+    assert "not converged" not in words_of_one_walk.lower()
 
 
 def test_hostile_words_stay_words(tmp_path):

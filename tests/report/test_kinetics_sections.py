@@ -27,9 +27,9 @@ def written(curves=True):
     return document() | {"kinetics": kinetics, "emg": emg}
 
 
-@pytest.fixture
-def page(tmp_path):
-    return render(write_output(tmp_path, written(), walk_arrays()))
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    return render(write_output(tmp_path_factory.mktemp("out"), written(), walk_arrays()))
 
 
 @pytest.mark.parametrize(

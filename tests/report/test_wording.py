@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from gaitlab.report.result import Criterion, Weights
-from gaitlab.report.wording import weights_in_words
+from gaitlab.report.result import Criterion, Result, Weights
+from gaitlab.report.wording import cohort_weights, weights_in_words
 
 
 def criterion(name, weight, sd, identifiable=True, at_bound=False):
@@ -11,8 +11,12 @@ def criterion(name, weight, sd, identifiable=True, at_bound=False):
     )
 
 
-def words(*criteria, status="solved", correlation=None, fit=None, comparison=None):
-    weights = Weights(
+def words(*criteria, reference=None, **others):
+    return " ".join(weights_in_words(weights(criteria, **others), reference))
+
+
+def weights(criteria, correlation=None, fit=None, comparison=None, status="solved"):
+    return Weights(
         criteria=criteria,
         correlation=correlation,
         fit_rms=fit,
@@ -21,7 +25,6 @@ def words(*criteria, status="solved", correlation=None, fit=None, comparison=Non
         solver={"status": status},
         document={},
     )
-    return " ".join(weights_in_words(weights))
 
 
 @pytest.mark.parametrize(
@@ -59,3 +62,25 @@ def test_nothing_is_concluded_without_a_certificate():
     said = words(criterion("a", 1.0, 0.1), status="not_converged")
     assert said.startswith("The computation did not reach its certificate (status: not converged).")
     assert "100 %" not in said
+
+
+def test_shares_stand_beside_the_reference_cohort():
+    said = words(criterion("stability", 0.62, 0.05), reference={"stability": (0.325, 0.125)})
+    assert said.startswith("Shares of the modelled cost: stability 62 % (sd 5 %; reference cohort 20-45 %).")
+
+
+def test_without_a_cohort_the_reader_is_told():
+    assert "No reference cohort for weights" in words(criterion("a", 1.0, 0.1))
+
+
+@pytest.mark.parametrize(("names", "expected"), [(("a", "b"), {"a": (0.3, 0.1), "b": (0.3, 0.1)}), (("a",), {})])
+def test_a_cohort_counts_only_with_the_same_criteria(names, expected):
+    stored = {name: {"mean": 0.3, "sd": 0.1} for name in names}
+    result = Result(
+        name="x",
+        document={"scores": {"reference": {"weights": stored}}},
+        events=(),
+        kinematics={},
+        weights=weights((criterion("a", 0.5, 0.1), criterion("b", 0.5, 0.1))),
+    )
+    assert cohort_weights(result) == expected
