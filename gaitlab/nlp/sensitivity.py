@@ -6,12 +6,13 @@ bookkeeping: their barrier weights are what holds the solution to them.
 """
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from ..errors import NotConverged
 from .banded import BandedLU, kkt_assembly
-from .sparse_problem import Derivatives, SparseProblem, multiply
+from .sparse_problem import Derivatives, SparseProblem, multiply, multiply_transposed
 from .sparse_solution import SparseSolution
 
 
@@ -36,10 +37,21 @@ class Sensitivity:
 
         Raises `errors.NotConverged` where the KKT matrix is singular.
         """
-        rhs = np.zeros((self.structure.n_w + self.structure.n_g, mixed.shape[1]))
-        rhs[: self.structure.n_w] = -mixed
-        return self._factors().solve(rhs)
+        n_g, n_c, m = self.structure.n_g, self.structure.n_c, mixed.shape[1]
+        return self.of_conditions(mixed, np.zeros((n_g, m)), np.zeros((n_c, m)))
 
+    def of_conditions(self, mixed: np.ndarray, equalities: np.ndarray, inequalities: np.ndarray) -> np.ndarray:
+        """Derivative of (w, lam_g) when the gradient of the Lagrangian, g and c move at a fixed point.
+
+        Moves of shapes (n_w, m), (n_g, m) and (n_c, m); result (n_w + n_g, m). Raises `errors.NotConverged` where the
+        KKT matrix is singular.
+        """
+        s, weighted = self.structure, self.sigma[:, None] * inequalities
+        pressed = [multiply_transposed(s.jac_c, self.derivatives.jac_c, column, s.n_w) for column in weighted.T]
+        top = mixed + np.stack(pressed, axis=1)
+        return self._factors.solve(-np.concatenate([top, equalities]))
+
+    @cached_property
     def _factors(self) -> BandedLU:
         factors = self.assembly.factorise(self._band.copy())
         if factors is None:
@@ -49,11 +61,19 @@ class Sensitivity:
             )
         return factors
 
-    def predict(self, direction: np.ndarray) -> SparseSolution:
-        """First-order prediction of the solution after a move, direction of (w, lam_g), shape (n_w + n_g,)."""
+    def slack_moves(self, direction: np.ndarray) -> np.ndarray:
+        """J_c dw for a direction of (w, lam_g), shape (n_w + n_g,); result (n_c,)."""
+        s = self.structure
+        return multiply(s.jac_c, self.derivatives.jac_c, direction[: s.n_w], s.n_c)
+
+    def predict(self, direction: np.ndarray, inequalities: np.ndarray | None = None) -> SparseSolution:
+        """First-order prediction of the solution after a move, direction of (w, lam_g), shape (n_w + n_g,).
+
+        `inequalities` is how far c moves at a fixed point, shape (n_c,); nought by default.
+        """
         x, n_w = self.solution, self.structure.n_w
         dw = direction[:n_w]
-        ds = multiply(self.structure.jac_c, self.derivatives.jac_c, dw, self.structure.n_c)
+        ds = self.slack_moves(direction) + (0.0 if inequalities is None else inequalities)
         # A linear prediction must not leave the interior.
         s = np.maximum(x.s + ds, 0.1 * x.s)
         lam_c = np.maximum(x.lam_c - self.sigma * ds, 0.1 * x.lam_c)

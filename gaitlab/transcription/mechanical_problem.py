@@ -241,10 +241,10 @@ class MechanicalProblem:
             lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)]
         )
         contact_jac, contact_hess = s.evaluate["node_derivatives"](self.states(w), d.p, mu)
-        jac_r = np.swapaxes(self._to_local(jac), 1, 2)  # (2 N, n_r, n_z)
+        jac_r = np.swapaxes(self.to_local(jac), 1, 2)  # (2 N, n_r, n_z)
         kept, unit = np.broadcast_to((s.point_index >= 0)[:, None, :], jac_r.shape), np.ones(len(s.limits))
         jac_g = [jac_r[kept], self._contact_entries(s.contact_terms, contact_jac), np.ones(len(s.fixed_columns))]
-        hess_local = self._to_local(np.swapaxes(self._to_local(hess), 1, 2))
+        hess_local = self.to_local(np.swapaxes(self.to_local(hess), 1, 2))
         return Derivatives(
             grad=self._gradient(w, grad),
             jac_g=np.concatenate(jac_g),
@@ -285,7 +285,7 @@ class MechanicalProblem:
         gradient[:, n_q : 2 * n_q] += np.swapaxes(inner[:, :, n_y:], 1, 2)
         return self.scatter_gradient(s.weights[:, None, None] * gradient)
 
-    def _to_local(self, block: np.ndarray) -> np.ndarray:
+    def to_local(self, block: np.ndarray) -> np.ndarray:
         """Chain rule from (q, v, a, f) to (q0, v0, q1, v1, f) along axis 1: (2 N, 3 n_q + n_f, m) to (2 N, n_z, m)."""
         s, n_q = self.shared, self.shared.layout.n_q
         n, m = len(block), block.shape[2]
@@ -295,7 +295,7 @@ class MechanicalProblem:
     def scatter_gradient(self, point_gradient: np.ndarray) -> np.ndarray:
         """Sum gradients in (q, v, a, f) at the Gauss points, shape (2 N, 3 n_q + n_f, m), over w; (n_w, m)."""
         s = self.shared
-        local = self._to_local(point_gradient)
+        local = self.to_local(point_gradient)
         kept = s.point_index >= 0
         columns = [
             np.bincount(s.point_index[kept], weights=local[:, :, j][kept], minlength=s.n_w)

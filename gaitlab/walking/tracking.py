@@ -108,13 +108,33 @@ def measured_stride(
 def _stance_height(subject: SubjectModel, stages: tuple[ContactStage, ...], q: np.ndarray) -> float:
     """Mean height of the contact points while they are planted [m]."""
     heights = point_positions(subject, _contact_points(subject), q)
-    planted: list[np.ndarray] = []
+    planted = [heights[name][nodes, 2] for name, nodes in _planted(stages)]
+    return float(np.mean(np.concatenate(planted))) if planted else 0.0
+
+
+def planted_heights(subject: SubjectModel, stages: tuple[ContactStage, ...], q: np.ndarray) -> np.ndarray:
+    """Mean height of the planted contact points at each node [m], shape (N + 1,), of coordinates q (N + 1, n_q).
+
+    Where no point is planted, linear between the nodes before and after.
+    """
+    heights = point_positions(subject, _contact_points(subject), q)
+    total, count = np.zeros(len(q)), np.zeros(len(q))
+    for name, nodes in _planted(stages):
+        total[nodes] += heights[name][nodes, 2]
+        count[nodes] += 1.0
+    known = np.flatnonzero(count)
+    return np.interp(np.arange(len(q)), known, total[known] / count[known])
+
+
+def _planted(stages: tuple[ContactStage, ...]) -> list[tuple[str, slice]]:
+    """Contact points and the nodes at which they are planted; a node between two stages counts in both."""
+    found: list[tuple[str, slice]] = []
     node = 0
     for stage in stages:
         nodes = slice(node, node + stage.n_intervals + 1)
-        planted += [heights[name][nodes, 2] for i, name in enumerate(POINTS) if 3 * i + 2 in stage.active]
+        found += [(name, nodes) for i, name in enumerate(POINTS) if 3 * i + 2 in stage.active]
         node += stage.n_intervals
-    return float(np.mean(np.concatenate(planted))) if planted else 0.0
+    return found
 
 
 def _contact_points(subject: SubjectModel) -> dict[str, PointOnSegment]:
@@ -126,11 +146,16 @@ def track(
 ) -> TrackedWalk:
     """Solve the tracking problem; whether it converged is in the solution's status."""
     settings = settings or TrackingSettings()
-    functions = walking_functions(layout_of(stride.subject)).functions
-    layout = MechanicalLayout(stride.stages, stride.n_q, N_FORCES, ROOT, Boundary())
-    problem = MechanicalProblem(MechanicalStructure(layout, functions), tracking_data(stride, settings))
+    problem = tracking_problem(stride, settings)
     solution = settings.solver.solve(problem, _first_guess(problem), progress)
     return TrackedWalk(stride=stride, problem=problem, solution=solution)
+
+
+def tracking_problem(stride: MeasuredStride, settings: TrackingSettings) -> MechanicalProblem:
+    """The tracking problem of a stride."""
+    functions = walking_functions(layout_of(stride.subject)).functions
+    layout = MechanicalLayout(stride.stages, stride.n_q, N_FORCES, ROOT, Boundary())
+    return MechanicalProblem(MechanicalStructure(layout, functions), tracking_data(stride, settings))
 
 
 def tracking_data(stride: MeasuredStride, settings: TrackingSettings) -> MechanicalData:

@@ -192,7 +192,9 @@ class _Run(Generic[R]):
             return self._reject(SweepStatus.UNSOLVED, solution.status.value)
         if not response.sensitivity.is_minimum():
             return self._reject(SweepStatus.NO_MINIMUM, "the reduced Hessian has a negative eigenvalue")
-        error = _distance(solution.w, predicted.w, _distance(predicted.w, last.response.solution.w, 1.0))
+        error = relative_distance(
+            solution.w, predicted.w, relative_distance(predicted.w, last.response.solution.w, 1.0)
+        )
         if error > self.method.max_prediction_error:
             return self._reject(SweepStatus.JUMP, f"the next solution is {error:.1f} predicted moves away")
         return SweepStep(share=share, theta=theta, response=response, prediction_error=error)
@@ -204,8 +206,8 @@ class _Run(Generic[R]):
         return Sweep(steps=tuple(self.steps), status=status, reason=reason, rejected=self.rejected)
 
 
-def _distance(a: np.ndarray, b: np.ndarray, unit: float) -> float:
-    """Norm of a - b in a unit; differences within rounding of the solver count as none."""
+def relative_distance(a: np.ndarray, b: np.ndarray, unit: float) -> float:
+    """Norm of a - b, shapes (n,), in a unit; differences within rounding of the solver count as none."""
     d = float(np.linalg.norm(a - b))
     return 0.0 if d <= 1e-6 * (1.0 + float(np.linalg.norm(b))) else d / max(unit, 1e-300)
 
