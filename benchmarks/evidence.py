@@ -21,6 +21,7 @@ import issue3_null_space  # noqa: F401 - registers its measurements
 import issue3_ocp  # noqa: F401 - registers its measurements
 import issue5_comparison  # noqa: F401 - registers its measurements
 import issue5_kinetics  # noqa: F401 - registers its measurements
+import issue5_report  # noqa: F401 - registers its measurements
 from registry import MEASUREMENTS, ROOT, Measurement, holds
 
 FOLDER = ROOT / "benchmarks" / "evidence"

@@ -13,6 +13,7 @@ import msgspec
 from ..errors import InvalidRecording, OutputError
 from ..mocap.recording import EventKind, EventSource, Side
 from .kinetics_document import EmgEntry, KineticsEntry
+from .prediction_document import PredictionEntry
 from .score_document import ScoresEntry, StridesEntry
 from .spatiotemporal import NormalisedSpatiotemporal, Spatiotemporal
 
@@ -253,6 +254,10 @@ class Document(msgspec.Struct, frozen=True, kw_only=True):
     """All strides of all trials: outliers, representative stride, consistency."""
     scores: ScoresEntry | None = None
     """Gait variable and profile scores, gait deviation index, and the norms that they refer to."""
+    prediction: PredictionEntry | None = None
+    """Only in results of `gaitlab predict`: what was changed, the way there, and what it changes."""
+    environment: dict[str, str] = {}
+    """Versions and machine that computed it, by name; never the machine's name."""
 
 
 def schema() -> dict[str, Any]:

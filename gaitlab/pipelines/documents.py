@@ -24,6 +24,7 @@ from ..clinical.document import (
     SubjectEntry,
     WeightsEntry,
 )
+from ..clinical.environment import environment
 from ..clinical.spatiotemporal import mean, normalise, standard_deviation
 from ..mocap.recording import Recording, Side
 from ..multibody.subject import SubjectModel
@@ -31,6 +32,9 @@ from .kinetics import emg_entry, kinetics_entry
 from .references import References
 from .scores import scores_entry, strides_entry
 from .trial import TrialAnalysis
+
+PACKAGES = ("numpy", "scipy", "casadi", "pin", "ezc3d")
+"""Besides gaitlab, what computes a result."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +77,7 @@ def document_of(session: Session, trials: Sequence[TrialAnalysis], weights: Weig
         warnings=_warnings(session, trials),
         strides=strides_entry(trials),
         scores=scores_entry(trials, session.references, _leg_length(session), _speed(sides)),
+        environment=environment(PACKAGES),
     )
 
 
