@@ -1,8 +1,4 @@
-"""Collects the commands, and turns every way to end into an exit code.
-
-0: everything asked for was produced. 2: bad input, one sentence on stderr. 3: not converged, the results so far are
-written and marked. 130: interrupted.
-"""
+"""Collects the commands."""
 
 import sys
 from typing import Annotated
@@ -10,21 +6,20 @@ from typing import Annotated
 import typer
 
 from .. import __version__
-from ..errors import Cancelled, GaitlabError, NotConverged
 from .analyse import analyse
 from .benchmark import benchmark
 from .compare import compare_results
 from .demo import demo
 from .demo_data import demo_data
+from .ending import run_app
+from .export import export_results
 from .inspect import inspect
 from .norms import norms
+from .openapi import openapi
 from .report import report
 from .schema import schema
+from .serve import SERVER_COMMANDS
 from .view import view
-
-BAD_INPUT = 2
-NOT_CONVERGED = 3
-INTERRUPTED = 130
 
 app = typer.Typer(
     name="gaitlab",
@@ -33,10 +28,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     no_args_is_help=False,
 )
-for command in (analyse, inspect, view, schema, demo):
+for command in (analyse, inspect, view, schema, demo, *SERVER_COMMANDS, openapi):
     app.command()(command)
 app.command(name="demo-data")(demo_data)
 app.command(name="compare")(compare_results)
+app.command(name="export")(export_results)
 app.add_typer(benchmark)
 app.add_typer(norms)
 app.add_typer(report)
@@ -62,18 +58,4 @@ def main(arguments: list[str] | None = None) -> None:
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit code."""
-    try:
-        return int(app(arguments, standalone_mode=False) or 0)
-    except NotConverged as error:
-        return _say(str(error), NOT_CONVERGED)
-    except (Cancelled, typer.Abort, KeyboardInterrupt):
-        return _say("stopped before the end; nothing more is written", INTERRUPTED)
-    except GaitlabError as error:
-        return _say(str(error), BAD_INPUT)
-    except typer.TyperException as error:
-        return _say(f"{error.format_message().rstrip('.')}: see gaitlab --help", BAD_INPUT)
-
-
-def _say(sentence: str, code: int) -> int:
-    typer.echo(f"gaitlab: {sentence}", err=True)
-    return code
+    return run_app(app, arguments)

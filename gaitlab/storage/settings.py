@@ -1,7 +1,7 @@
 """Everything that an installation may choose, from the environment (GAITLAB_...) or the command line."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -87,3 +87,12 @@ class Settings(BaseSettings):
     def secrets_dir(self) -> Path:
         """Folder of what nobody else may read."""
         return self.data_dir / "secrets"
+
+    def plain(self) -> dict[str, Any]:
+        """All settings as JSON holds them, secrets included: for our own processes only, through a pipe."""
+        revealed = {
+            name: value.get_secret_value()
+            for name in type(self).model_fields
+            if isinstance(value := getattr(self, name), SecretStr)
+        }
+        return self.model_dump(mode="json") | revealed

@@ -1,0 +1,38 @@
+"""The process of the web server: `python -m gaitlab.cli.web_process DESCRIPTOR`, a listening socket of its parent.
+
+The parent keeps the socket: while this process is started again, requests wait instead of failing.
+"""
+
+import socket
+import sys
+
+import uvicorn
+
+from ..api.app import create_app
+from ..jobs.logs import configure_logs
+from ..storage.settings import Settings
+from .children import settings_from_parent
+
+SHUTDOWN_SECONDS = 10
+
+
+def main() -> None:
+    """Serve until SIGTERM or the end of the parent."""
+    settings = Settings(**settings_from_parent())
+    configure_logs(settings.log_format)
+    config = uvicorn.Config(
+        create_app(settings),
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        proxy_headers=bool(settings.trusted_proxies),
+        forwarded_allow_ips=list(settings.trusted_proxies),
+        ssl_certfile=settings.tls_certificate,
+        ssl_keyfile=settings.tls_key,
+        timeout_graceful_shutdown=SHUTDOWN_SECONDS,
+    )
+    uvicorn.Server(config).run([socket.socket(fileno=int(sys.argv[1]))])
+
+
+if __name__ == "__main__":
+    main()
