@@ -1,0 +1,160 @@
+"""The web application."""
+
+from collections.abc import AsyncGenerator, Callable, Sequence
+from contextlib import asynccontextmanager
+from datetime import UTC, datetime
+from http import HTTPStatus
+from pathlib import Path
+from typing import Any
+
+import anyio.to_thread
+from fastapi import APIRouter, FastAPI
+from prometheus_client import REGISTRY
+from sqlalchemy import select
+from starlette.middleware.gzip import GZipMiddleware
+
+from .. import __version__
+from ..jobs.events import EventBroker
+from ..storage.database import Database
+from ..storage.files import open_store
+from ..storage.models import ApiToken, User, WebSession
+from ..storage.settings import Settings
+from .authentication import is_alive
+from .headers import SecurityHeaders
+from .observation import Observation
+from .openapi import document, operation_id
+from .origin import OwnPagesOnly
+from .pages import FRONTEND, Frontend
+from .problems import add_handlers, documented
+from .routes import (
+    analyses,
+    attachments,
+    audit_log,
+    cohorts,
+    operations,
+    patients,
+    recordings,
+    reports,
+    results,
+    sessions,
+    sign_in,
+    single_sign_on,
+    subjects,
+    system,
+    uploads,
+    users,
+    viewers,
+)
+from .services import Services
+from .viewers import Limits, Owner, Viewers
+
+PREFIX = "/api/v1"
+CONNECTIONS = 20
+"""Of the database, kept open; as many more for peaks."""
+THREADS = 30
+"""Requests worked on at a time; fewer than connections, or threads would wait for each other's."""
+ROUTERS = (
+    sign_in.router,
+    single_sign_on.router,
+    users.router,
+    patients.router,
+    sessions.router,
+    recordings.router,
+    uploads.router,
+    attachments.router,
+    subjects.router,
+    analyses.router,
+    results.router,
+    viewers.router,
+    reports.router,
+    cohorts.router,
+    audit_log.router,
+    system.router,
+)
+S = HTTPStatus
+_PROBLEMS = documented(
+    S.UNAUTHORIZED, S.FORBIDDEN, S.NOT_FOUND, S.CONFLICT, S.REQUEST_ENTITY_TOO_LARGE, S.UNPROCESSABLE_ENTITY,
+    S.TOO_MANY_REQUESTS, S.SERVICE_UNAVAILABLE,
+)  # fmt: skip
+
+
+def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
+    """The application of an installation whose database is there and migrated.
+
+    Args:
+        settings: With `database_url`.
+        frontend: Folder of the built frontend; without it only the API is served.
+    """
+    app = FastAPI(
+        title="gaitlab",
+        version=__version__,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url=f"{PREFIX}/openapi.json",
+        generate_unique_id_function=operation_id,
+        lifespan=_lifespan,
+    )
+    app.state.settings, app.state.metrics = settings, REGISTRY
+    app.openapi = lambda: document(app, (*ROUTERS, operations.router))
+    api = APIRouter(prefix=PREFIX, responses=_PROBLEMS)
+    for router in ROUTERS:
+        api.include_router(router)
+    app.include_router(api)
+    app.include_router(operations.router)
+    if frontend.is_dir():
+        app.mount("/", Frontend(frontend), name="frontend")
+    add_handlers(app)
+    # The last one added is the outermost.
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=5)
+    app.add_middleware(OwnPagesOnly)
+    app.add_middleware(SecurityHeaders, tls=settings.secure_cookies, uncached=("/api/", "/health/", "/metrics"))
+    app.add_middleware(Observation)
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
+    settings: Settings = app.state.settings
+    url = settings.database_url
+    database = Database.open("" if url is None else url.get_secret_value(), CONNECTIONS)
+    limits = Limits(
+        per_user=settings.viewers_per_user, together=settings.viewers, idle=settings.viewer_idle_minutes * 60.0
+    )
+    services = Services(
+        settings=settings,
+        database=database,
+        files=open_store(settings),
+        events=EventBroker(database.url),
+        viewers=Viewers(limits, _signed_out(database, settings)),
+    )
+    app.state.services = services
+    anyio.to_thread.current_default_thread_limiter().total_tokens = THREADS
+    await services.events.start()
+    services.viewers.start()
+    try:
+        yield
+    finally:
+        await services.viewers.stop()
+        await services.events.stop()
+        database.close()
+
+
+def _signed_out(database: Database, settings: Settings) -> Callable[[Sequence[Owner]], set[Owner]]:
+    """Tells which of the owners of 3D sessions have no valid session or token any more."""
+
+    def gone(owners: Sequence[Owner]) -> set[Owner]:
+        sessions = [owner.web_session_id for owner in owners if owner.web_session_id is not None]
+        tokens = [owner.token_id for owner in owners if owner.token_id is not None]
+        moment = datetime.now(UTC)
+        with database.sessions() as db:
+            found = db.scalars(
+                select(WebSession)
+                .join(User, User.id == WebSession.user_id)
+                .where(WebSession.id.in_(sessions), User.active)
+            )
+            alive: set[Any] = {session.id for session in found if is_alive(session, moment, settings)}
+            valid = select(ApiToken.id).where(ApiToken.id.in_(tokens), ApiToken.revoked_at.is_(None))
+            alive |= set(db.scalars(valid))
+        return {owner for owner in owners if (owner.web_session_id or owner.token_id) not in alive}
+
+    return gone

@@ -1,0 +1,176 @@
+"""Finding out who asks: a session's cookie or a token; and signing in and out."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from uuid import UUID
+
+from sqlalchemy import func, select, update
+from sqlalchemy.orm import Session
+
+from ..errors import AccessDenied, NotSignedIn, SecondFactorMissing, TooManyAttempts
+from ..storage.models import ApiToken, LoginAttempt, User, WebSession
+from ..storage.settings import Settings
+from .caller import Caller
+from .passwords import hash_password, verify_password
+from .permissions import PERMISSIONS, Permission
+from .second_factor import accepted_step
+from .tokens import SESSION, csrf_token, new_token, same, token_hash
+
+ATTEMPTS = 10
+"""Failed attempts to sign in per account within `WINDOW`; ten times as many per address."""
+WINDOW = timedelta(minutes=15)
+SEEN_EVERY = timedelta(minutes=1)
+"""How often the last use of a session or a token is written down."""
+WRONG = "login, password or code is wrong"
+NOBODY = "nobody is signed in: sign in, or send a token as 'Authorization: Bearer ...'"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Credentials:
+    """What a request brings along."""
+
+    cookie: str = ""
+    bearer: str = ""
+    csrf: str = ""
+    changes: bool = False
+    """Whether the request may change something, which a cookie alone does not suffice for."""
+
+
+def find_caller(db: Session, credentials: Credentials, settings: Settings) -> Caller:
+    """The caller of a request.
+
+    Raises:
+        NotSignedIn: No valid session and no valid token.
+        AccessDenied: A change without the session's CSRF token.
+    """
+    if credentials.bearer:
+        return _by_token(db, credentials.bearer)
+    if not credentials.cookie:
+        raise NotSignedIn(NOBODY)
+    caller = _by_cookie(db, credentials.cookie, settings)
+    if credentials.changes and not same(credentials.csrf, csrf_token(credentials.cookie)):
+        raise AccessDenied("the request has no valid X-CSRF-Token: read it from /api/v1/auth/session")
+    return caller
+
+
+def _by_token(db: Session, text: str) -> Caller:
+    query = (
+        select(ApiToken, User)
+        .join(User, ApiToken.user_id == User.id)
+        .where(ApiToken.token_hash == token_hash(text), ApiToken.revoked_at.is_(None), User.active)
+    )
+    found = db.execute(query).one_or_none()
+    moment = datetime.now(UTC)
+    if found is None or (found[0].expires_at is not None and found[0].expires_at <= moment):
+        raise NotSignedIn("the token does not exist, was revoked or has expired: make a new one")
+    token, user = found.tuple()
+    if token.last_used_at is None or moment - token.last_used_at > SEEN_EVERY:
+        db.execute(update(ApiToken).where(ApiToken.id == token.id).values(last_used_at=moment))
+    scopes = {Permission(scope) for scope in token.scopes if scope in set(Permission)}
+    return _caller(user, PERMISSIONS[user.role] & scopes, token_id=token.id)
+
+
+def _by_cookie(db: Session, text: str, settings: Settings) -> Caller:
+    query = (
+        select(WebSession, User)
+        .join(User, WebSession.user_id == User.id)
+        .where(WebSession.token_hash == token_hash(text), User.active)
+    )
+    found = db.execute(query).one_or_none()
+    moment = datetime.now(UTC)
+    if found is None or not is_alive(found[0], moment, settings):
+        raise NotSignedIn("the session has ended: sign in again")
+    session, user = found.tuple()
+    if moment - session.last_seen_at > SEEN_EVERY:
+        db.execute(update(WebSession).where(WebSession.id == session.id).values(last_seen_at=moment))
+    return _caller(user, PERMISSIONS[user.role], web_session_id=session.id)
+
+
+def is_alive(session: WebSession, moment: datetime, settings: Settings) -> bool:
+    """Whether a browser's session still counts."""
+    idle = timedelta(minutes=settings.session_idle_minutes)
+    return session.revoked_at is None and session.expires_at > moment and moment - session.last_seen_at < idle
+
+
+def _caller(user: User, permissions: frozenset[Permission], **through: UUID) -> Caller:
+    return Caller(user_id=user.id, login=user.login, role=user.role, permissions=permissions, **through)
+
+
+def check_rate(db: Session, login: str, address: str) -> None:
+    """Raise TooManyAttempts when an account or an address has failed too often."""
+    since = datetime.now(UTC) - WINDOW
+    for column, value, most in (
+        (LoginAttempt.login_hash, token_hash(login), ATTEMPTS),
+        (LoginAttempt.address, address, 10 * ATTEMPTS),
+    ):
+        query = select(func.count(), func.min(LoginAttempt.at)).where(
+            column == value, LoginAttempt.at > since, LoginAttempt.succeeded.is_(False)
+        )
+        count, first = db.execute(query).one()
+        if count >= most:
+            seconds = max(1.0, (first - since).total_seconds())
+            raise TooManyAttempts(
+                f"too many failed attempts to sign in: try again in {seconds / 60.0:.0f} minutes", seconds
+            )
+
+
+def note_attempt(db: Session, login: str, address: str, succeeded: bool) -> None:
+    """Remember an attempt; a success forgives the account's failures."""
+    if succeeded:
+        query = update(LoginAttempt).where(LoginAttempt.login_hash == token_hash(login))
+        db.execute(query.values(succeeded=True))
+    db.add(LoginAttempt(login_hash=token_hash(login), address=address, succeeded=succeeded))
+
+
+def check_password(db: Session, login: str, password: str, code: str | None) -> User:
+    """The account that the credentials belong to.
+
+    Raises:
+        NotSignedIn: Wrong, or a second factor is missing; the sentence tells only the latter, after a right password.
+    """
+    user = db.scalars(select(User).where(User.login == login, User.active)).one_or_none()
+    fits, renewed = verify_password(password, None if user is None else user.password_hash)
+    if user is None or not fits:
+        raise NotSignedIn(WRONG)
+    if renewed is not None:
+        user.password_hash = renewed
+    if user.totp_confirmed and user.totp_secret is not None:
+        if code is None:
+            raise SecondFactorMissing("the account has a second factor: send the code of the authenticator, too")
+        use_code(user, code)
+    return user
+
+
+def use_code(user: User, code: str) -> None:
+    """Accept a code of the second factor once; raises NotSignedIn."""
+    step = None if user.totp_secret is None else accepted_step(user.totp_secret, code, user.totp_last_step)
+    if step is None:
+        raise NotSignedIn(WRONG)
+    user.totp_last_step = step
+
+
+def start_session(db: Session, user: User, settings: Settings, second_factor: bool) -> tuple[str, WebSession]:
+    """Token of a new browser session, and its row."""
+    text, digest = new_token(SESSION)
+    session = WebSession(
+        user_id=user.id,
+        token_hash=digest,
+        csrf_hash=token_hash(csrf_token(text)),
+        expires_at=datetime.now(UTC) + timedelta(hours=settings.session_hours),
+        second_factor=second_factor,
+    )
+    db.add(session)
+    return text, session
+
+
+def end_sessions(db: Session, user_id: UUID, but: UUID | None = None) -> None:
+    """Sign a user out everywhere, except in one session."""
+    query = update(WebSession).where(WebSession.user_id == user_id, WebSession.revoked_at.is_(None))
+    if but is not None:
+        query = query.where(WebSession.id != but)
+    db.execute(query.values(revoked_at=datetime.now(UTC)))
+
+
+def set_password(user: User, password: str) -> None:
+    """Store a new password; the caller has checked it."""
+    user.password_hash = hash_password(password)

@@ -1,0 +1,80 @@
+"""What this installation can do, and what it is doing."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Request
+from sqlalchemy import func, select, text
+from sqlalchemy.orm import Session
+
+from ... import __version__
+from ...clinical.document import CURVES
+from ...clinical.document import schema as document_schema
+from ...pipelines.options import PLAUSIBLE
+from ...storage.models import Job, JobStatus, Row, StoredFile
+from ...walking.criteria import ALL, THESIS
+from ..caller import Call
+from ..dependencies import allowed, services_of
+from ..files import CHUNK_LIMIT
+from ..orders import NORM_NAMES
+from ..permissions import Permission
+from ..schemas.work import About, SystemState
+
+router = APIRouter(tags=["system"])
+SignedIn = Annotated[Call, allowed(Permission.ACCOUNT)]
+Manager = Annotated[Call, allowed(Permission.SYSTEM_READ)]
+_ROWS = text(
+    "SELECT relname, GREATEST(reltuples, 0)::bigint FROM pg_class "
+    "WHERE relkind = 'r' AND relnamespace = 'public'::regnamespace"
+)
+_WORKERS = text("SELECT id, last_heartbeat FROM procrastinate_workers ORDER BY id")
+
+
+@router.get("/about")
+def get_about(request: Request, call: SignedIn) -> About:
+    """Criteria, curves, body parameters, norms and limits."""
+    del call  # Only to be signed in.
+    settings = services_of(request).settings
+    return About(
+        version=__version__,
+        criteria=sorted(ALL),
+        default_criteria=THESIS,
+        curves=CURVES,
+        body_parameters=PLAUSIBLE,
+        norms=sorted(NORM_NAMES),
+        largest_recording=settings.max_recording_bytes,
+        largest_upload=settings.max_upload_bytes,
+        chunk_size=CHUNK_LIMIT,
+    )
+
+
+@router.get("/schemas/result")
+def get_result_schema() -> dict[str, Any]:
+    """JSON schema of a result's document."""
+    return document_schema()
+
+
+@router.get("/system")
+def get_system_state(request: Request, call: Manager) -> SystemState:
+    """Queue, workers, and how much is stored."""
+    counts = dict(call.db.execute(select(Job.status, func.count()).group_by(Job.status)).tuples().all())
+    files, file_bytes = call.db.execute(
+        select(func.count(), func.coalesce(func.sum(StoredFile.size), 0)).select_from(StoredFile)
+    ).one()
+    known = set(Row.metadata.tables)
+    return SystemState(
+        version=__version__,
+        jobs={status: counts.get(status, 0) for status in JobStatus},
+        workers=_workers(call.db),
+        viewers=len(services_of(request).viewers),
+        rows={name: count for name, count in call.db.execute(_ROWS).tuples() if name in known},
+        database_bytes=call.db.scalar(text("SELECT pg_database_size(current_database())")) or 0,
+        files=files,
+        file_bytes=int(file_bytes),
+    )
+
+
+def _workers(db: Session) -> list[dict[str, Any]]:
+    return [
+        {"id": number, "last_heartbeat": None if seen is None else seen.isoformat()}
+        for number, seen in db.execute(_WORKERS).tuples()
+    ]

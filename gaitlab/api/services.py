@@ -1,0 +1,20 @@
+"""What the running application is made of."""
+
+from dataclasses import dataclass
+
+from ..jobs.events import EventBroker
+from ..storage.database import Database
+from ..storage.files import FileStore
+from ..storage.settings import Settings
+from .viewers import Viewers
+
+
+@dataclass(frozen=True, kw_only=True)
+class Services:
+    """Made once per process."""
+
+    settings: Settings
+    database: Database
+    files: FileStore
+    events: EventBroker
+    viewers: Viewers
