@@ -8,10 +8,10 @@ import numpy as np
 
 from ..clinical.document import SIDES
 from ..errors import OutputError
-from ..mocap.c3d import file_hash
 from ..mocap.c3d_append import append_outputs
 from ..mocap.point_output import OutputKind, PointOutput
 from .result import Result, mapping, read_result
+from .source import file_hash
 from .walk_file import read_frames
 
 Columns = Mapping[str, np.ndarray]
@@ -55,7 +55,7 @@ def check_recording(result: Result, recording: Path) -> None:
 
 
 def made_from(result: Result, recording: Path) -> bool:
-    """Whether one of the walks of the result is this file, by its sha256; raises InvalidRecording."""
+    """Whether one of the walks of the result is this file, by its sha256; raises OutputError."""
     walks = [mapping(item) for item in result.parts("inputs") if mapping(item).get("role") == "walk"]
     return file_hash(recording) in {walk.get("sha256") for walk in walks}
 
