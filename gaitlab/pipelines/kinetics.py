@@ -20,7 +20,7 @@ from ..inverse.conventional import ConventionalKinematics
 from ..inverse.leg_kinetics import Kinetics, KineticsSettings, solve_kinetics
 from ..mocap.cycles import Cycle
 from ..mocap.emg import emg_envelopes, emg_muscle
-from ..mocap.plate_assignment import assign_contacts, contact_sentences
+from ..mocap.plate_assignment import PlateContact, assign_contacts, contact_sentences
 from ..mocap.recording import Event, Recording, Side
 from ..multibody.subject import SubjectModel
 from ..signal.envelope import BAND, SMOOTH
@@ -62,10 +62,18 @@ def trial_kinetics(
     subject: SubjectModel,
     steps: tuple[Sequence[Event], Cycles],
     settings: KineticsSettings,
+    contacts: Sequence[PlateContact] | None = None,
 ) -> TrialKinetics:
-    """Kinetics and EMG of one walk, per frame and cut into cycles; `steps` are its events and its cycles."""
+    """Kinetics and EMG of one walk, per frame and cut into cycles; `steps` are its events and its cycles.
+
+    Which foot stood on which plate is found unless `contacts` tells it.
+    """
     events, found = steps
-    solved, missing, warnings = _solve(recording, kinematics, subject, events, settings)
+    if contacts is not None:
+        solved = solve_kinetics(recording, kinematics, subject, (contacts, events), settings)
+        missing, warnings = tuple[str, ...](), tuple[str, ...]()
+    else:
+        solved, missing, warnings = _solve(recording, kinematics, subject, events, settings)
     curves = {} if solved is None else _cut_curves(solved, found, recording.rate)
     return TrialKinetics(
         name=recording.name,

@@ -12,6 +12,7 @@ from ..errors import OutputError
 from ..multibody.urdf import to_urdf
 from .analyse import Analysis, TrialAnalysis
 from .kinetics import kinetics_columns
+from .prediction_source import write_source
 
 JOINTS = ("hip", "knee", "ankle")
 ANGLE_DIGITS = 5  # [deg]
@@ -39,17 +40,18 @@ def write_analysis(analysis: Analysis, folder: Path) -> tuple[Path, ...]:
     """Write everything; returns the folders that hold a result.json, the overall one last."""
     make_folder(folder)
     if len(analysis.trials) == 1:
-        _write_trial(analysis.trials[0], analysis.document, folder)
+        write_trial(analysis.trials[0], analysis.document, folder)
         return (folder,)
     folders = tuple(folder / trial.name for trial in analysis.trials)
     for trial, document, own in zip(analysis.trials, analysis.documents, folders, strict=True):
         make_folder(own)
-        _write_trial(trial, document, own)
+        write_trial(trial, document, own)
     write_document(analysis.document, folder / "result.json")
     return (*folders, folder)
 
 
-def _write_trial(trial: TrialAnalysis, document: Document, folder: Path) -> None:
+def write_trial(trial: TrialAnalysis, document: Document, folder: Path) -> None:
+    """Write the files of one trial into its folder, which exists."""
     time = np.arange(trial.recording.n_frames) / trial.recording.rate
     write_table(folder / "angles.csv", time, angle_columns(trial.kinematics.angles), ANGLE_DIGITS)
     write_table(folder / "joint_centres.csv", time, centre_columns(trial.kinematics.joint_centres), METRE_DIGITS)
@@ -60,6 +62,8 @@ def _write_trial(trial: TrialAnalysis, document: Document, folder: Path) -> None
         (folder / "model.urdf").write_text(to_urdf(trial.subject), encoding="utf-8")
     with _writing(folder / "walk.npz"):
         np.savez_compressed(folder / "walk.npz", allow_pickle=False, **trial.arrays)
+    if trial.weights is not None and trial.weights.gait is not None:
+        write_source(trial.weights.gait, trial.constants, folder)
     write_document(document, folder / "result.json")
 
 

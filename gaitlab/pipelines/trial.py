@@ -9,6 +9,7 @@ from ..clinical.cycle_average import time_normalise
 from ..clinical.document import CURVES, SIDES, CalibrationEntry
 from ..clinical.spatiotemporal import Spatiotemporal, cycle_spatiotemporal
 from ..inverse.conventional import ConventionalKinematics
+from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
 from ..mocap.cycles import Cycle, full_strides, visible_strides
 from ..mocap.recording import Event, Recording, Side
@@ -32,6 +33,7 @@ class TrialAnalysis:
     events: tuple[Event, ...]
     cycles: Cycles
     calibration: CalibrationEntry
+    constants: Calibration
     kinematics: ConventionalKinematics
     curves: Curves
     spatiotemporal: Mapping[Side, tuple[Spatiotemporal, ...]]

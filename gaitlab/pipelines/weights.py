@@ -21,6 +21,7 @@ from ..walking.contact_schedule import Landing, ScheduleSettings, contact_stages
 from ..walking.criteria import by_name
 from ..walking.explanation import Explanation, ExplanationSettings, explain
 from ..walking.identification import IdentificationSettings
+from ..walking.identified_gait import IdentifiedGait, identified_gait
 from ..walking.model import walking_functions
 from ..walking.tracking import MeasuredStride, measured_stride
 from .optimal_arrays import optimal_arrays
@@ -59,6 +60,8 @@ class TrialWeights:
     arrays: Mapping[str, np.ndarray]
     """q_optimal, tau_optimal, forces_optimal ... for walk.npz, shape (n_frames, ...), NaN outside the strides."""
     warnings: tuple[str, ...] = ()
+    gait: IdentifiedGait | None = None
+    """What predictions start from; None where no certified optimum was found."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +94,9 @@ def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeight
     entry = replace_strides(weights_entry(main.found, main.seconds), entries, unseen)
     recording = request.recording
     arrays = optimal_arrays(main.found, recording.n_frames, recording.rate, request.heading)
-    return TrialWeights(entry=entry, arrays=arrays, warnings=(*skipped, *failed))
+    found = main.found
+    gait = identified_gait(found.optimum, found.estimate.theta, request.heading) if found.is_certified else None
+    return TrialWeights(entry=entry, arrays=arrays, warnings=(*skipped, *failed), gait=gait)
 
 
 def _workers(processes: int) -> AbstractContextManager[Workers | None]:

@@ -1,0 +1,71 @@
+"""What `gaitlab analyse` leaves for `gaitlab predict`: the identified gait, and the constants of the direct model."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+import msgspec
+import numpy as np
+
+from ..clinical.document import Document, read_document
+from ..errors import InvalidRecording, NotFound, OutputError
+from ..inverse.conventional_calibration import Calibration
+from ..walking.identified_gait import FILE, IdentifiedGait, read_gait, write_gait
+
+CALIBRATION = "calibration.json"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PredictionSource:
+    """The result of one trial, as far as a prediction needs it."""
+
+    name: str
+    gait: IdentifiedGait
+    calibration: Calibration
+    document: Document
+
+
+def write_source(gait: IdentifiedGait, calibration: Calibration, folder: Path) -> None:
+    """Write both files into the folder of a trial."""
+    write_gait(gait, folder / FILE)
+    path = folder / CALIBRATION
+    try:
+        path.write_bytes(msgspec.json.format(msgspec.json.encode(calibration, enc_hook=_encode), indent=2) + b"\n")
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written ({error.strerror}): choose a folder you may write to") from error
+
+
+def read_source(folder: Path, trial: str = "") -> PredictionSource:
+    """Read the result of a trial, or of the first of several in a folder, or of the one that is named.
+
+    Raises:
+        InvalidRecording: the folder holds no identified gait.
+        NotFound: there is no such trial.
+    """
+    if not folder.is_dir():
+        raise InvalidRecording(f"{folder} is not a folder: give the --out folder of gaitlab analyse")
+    trials = {path.parent.name: path.parent for path in sorted(folder.glob(f"*/{FILE}"))}
+    if (folder / FILE).is_file():
+        trials = {folder.resolve().name: folder, **trials}
+    if trial and trial not in trials:
+        raise NotFound("trial with an identified gait", trial, trials)
+    chosen = trials[trial] if trial else next(iter(trials.values()), folder)
+    gait, path = read_gait(chosen / FILE), chosen / CALIBRATION
+    try:
+        calibration = msgspec.json.decode(path.read_bytes(), type=Calibration, dec_hook=_decode)
+    except (OSError, msgspec.MsgspecError) as error:
+        raise InvalidRecording(f"{path} cannot be read ({error}): run 'gaitlab analyse' again") from error
+    document = read_document(chosen / "result.json")
+    return PredictionSource(name=chosen.resolve().name, gait=gait, calibration=calibration, document=document)
+
+
+def _encode(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return cast("np.ndarray", value).tolist()
+    raise NotImplementedError(type(value))
+
+
+def _decode(kind: type, value: Any) -> Any:
+    if kind is np.ndarray:
+        return np.array(value, dtype=float)
+    raise NotImplementedError(kind)
