@@ -4,6 +4,7 @@ from functools import lru_cache
 
 from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.bundled import demo_folder
+from gaitlab.pipelines.model import unsmoothed_motion
 from gaitlab.pipelines.options import AnalysisOptions
 from gaitlab.pipelines.weights import WeightsRequest, usable_strides
 
@@ -22,6 +23,7 @@ def request_of(trial, landing="soft"):
         events=trial.events,
         subject=trial.subject,
         q=trial.motion.q,
+        unsmoothed=unsmoothed_motion(trial.subject, trial.recording, trial.kinematics.heading, trial.motion),
         heading=trial.kinematics.heading,
         criteria=AnalysisOptions().criteria,
         seed=0,

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import nnls
 
 from ..errors import ProblemError
 from ..nlp.sparse_solution import Status
 from .problem import LowerLevel, Response
 from .result import WeightEstimate
+from .simplex_step import simplex_minimiser
 from .uncertainty import weight_uncertainty
 
 Progress = Callable[[int, float], None]
@@ -112,14 +112,7 @@ class _Search:
         theta, gradient = self.state.theta, jacobian.T @ self.state.response.residual
         gauss_newton = jacobian.T @ jacobian
         scale = np.diag(np.diag(gauss_newton) + 1e-12 * np.trace(gauss_newton))
-        values, vectors = np.linalg.eigh(gauss_newton + self.second_order + self.damping * scale)
-        # A least-squares form needs a positive definite model.
-        values = np.maximum(values, 1e-10 * values[-1])
-        root = np.sqrt(values)[:, None] * vectors.T
-        anchor = 1e4 * float(root.max())
-        b = root @ theta - (vectors.T @ gradient) / np.sqrt(values)
-        t, _ = nnls(np.vstack([root, np.full((1, len(theta)), anchor)]), np.append(b, anchor))
-        return t / t.sum()
+        return simplex_minimiser(theta, gradient, gauss_newton + self.second_order + self.damping * scale)
 
     def _learn(self, jacobian: np.ndarray, trial: _State, step: np.ndarray) -> None:
         """Update the second-order part so that it maps the step to the change of J at the new residual."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import ezc3d
 import numpy as np
 
-from gaitlab.errors import InvalidRecording, OutputError
+from gaitlab.errors import OutputError
 from gaitlab.mocap.force_plates import MILLIMETRES, plate_samples
 from gaitlab.mocap.interpretation import interpret
 from gaitlab.mocap.raw import ParameterValue, RawRecording
@@ -14,7 +14,12 @@ from gaitlab.mocap.recording import Recording
 from gaitlab.mocap.sandbox import ReaderLimits, read_raw
 from gaitlab.mocap.subject_parameters import file_parameters
 
-EVENT_LABELS = {"foot_strike": "Foot Strike", "foot_off": "Foot Off"}
+EVENT_LABELS = {
+    "foot_strike": "Foot Strike",
+    "foot_off": "Foot Off",
+    "foot_flat": "Foot Flat",
+    "heel_off": "Heel Off",
+}
 
 
 def read_c3d(path: Path, limits: ReaderLimits | None = None) -> Recording:
@@ -28,20 +33,12 @@ def read_c3d(path: Path, limits: ReaderLimits | None = None) -> Recording:
         InvalidRecording: The file cannot be used; the message says why and what to do.
     """
     raw = read_raw(path, limits or ReaderLimits())
-    return interpret(raw, name=path.stem, sha256=file_hash(path))
+    return interpret(raw, name=path.stem, sha256=_sha256(path))
 
 
-def file_hash(path: Path) -> str:
-    """SHA-256 of a file.
-
-    Raises:
-        InvalidRecording: It cannot be read.
-    """
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise InvalidRecording(f"{path} cannot be read ({error.strerror}): give the path of a C3D file") from error
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def extract(path: Path) -> RawRecording:
@@ -141,5 +138,5 @@ def _put_plates(c3d: ezc3d.c3d, recording: Recording) -> None:
 
 def _put_events(c3d: ezc3d.c3d, recording: Recording) -> None:
     start = recording.first_frame / recording.rate
-    for event in recording.events:
+    for event in sorted((*recording.events, *recording.sole_changes), key=lambda event: event.time):
         c3d.add_event([0, start + event.time], context=event.side.capitalize(), label=EVENT_LABELS[event.kind])

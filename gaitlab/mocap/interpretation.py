@@ -1,5 +1,7 @@
 """From the contents of a C3D file to a `Recording`: names, units, events, plates, subject parameters."""
 
+from collections.abc import Collection
+
 import numpy as np
 
 from gaitlab.errors import InvalidRecording
@@ -8,7 +10,7 @@ from gaitlab.mocap.labels import OUTPUT_GROUPS, sort_labels
 from gaitlab.mocap.laboratory import rotation_to_z_up
 from gaitlab.mocap.privacy import privacy_warnings
 from gaitlab.mocap.raw import RawRecording
-from gaitlab.mocap.recording import Event, EventKind, Recording, Side
+from gaitlab.mocap.recording import Event, EventKind, Recording, Side, SoleChange, SoleChangeKind
 from gaitlab.mocap.subject_parameters import subject_parameters
 
 METRES = {"mm": 1e-3, "millimeters": 1e-3, "millimetres": 1e-3, "cm": 1e-2, "m": 1.0, "meters": 1.0, "metres": 1.0}
@@ -20,6 +22,7 @@ KINDS: dict[str, EventKind] = {
     "foot off": "foot_off",
     "toe off": "foot_off",
 }
+SOLE_KINDS: dict[str, SoleChangeKind] = {"foot flat": "foot_flat", "heel off": "heel_off", "heel rise": "heel_off"}
 
 
 def interpret(raw: RawRecording, name: str, sha256: str) -> Recording:
@@ -55,6 +58,7 @@ def interpret(raw: RawRecording, name: str, sha256: str) -> Recording:
         model_outputs=positions | outputs,
         force_plates=plates,
         events=events,
+        sole_changes=file_sole_changes(raw),
         parameters=parameters,
         analog=_other_channels(raw),
         analog_rate=raw.analog_rate,
@@ -73,29 +77,44 @@ def _metre(raw: RawRecording) -> tuple[float, tuple[str, ...]]:
 
 
 def file_events(raw: RawRecording) -> tuple[tuple[Event, ...], tuple[str, ...]]:
-    """Foot strikes and foot offs of the EVENT group, in time order, and warnings.
+    """Foot strikes and foot offs of the EVENT group, in time order, and warnings."""
+    marks, outside = _marks(raw, {**KINDS, **SOLE_KINDS})
+    events = [
+        Event(side=side, kind=KINDS[label], time=time, source="file") for side, label, time in marks if label in KINDS
+    ]
+    warnings = (f"{outside} events of the file lie outside its stored frames and are not used",) if outside else ()
+    return tuple(events), warnings
+
+
+def file_sole_changes(raw: RawRecording) -> tuple[SoleChange, ...]:
+    """Foot flats and heel offs of the EVENT group, in time order."""
+    marks, _ = _marks(raw, SOLE_KINDS)
+    return tuple(SoleChange(side=side, kind=SOLE_KINDS[label], time=time) for side, label, time in marks)
+
+
+def _marks(raw: RawRecording, wanted: Collection[str]) -> tuple[list[tuple[Side, str, float]], int]:
+    """Side, label and time [s] of the EVENT group's entries with a wanted label, in time order; how many lie outside.
 
     EVENT:TIMES [min; s] count from the start of capture: t = 60 TIMES_0 + TIMES_1 - first_frame / rate.
     """
     labels, contexts = raw.numbered_texts("EVENT", "LABELS"), raw.numbered_texts("EVENT", "CONTEXTS")
     times = raw.numbers("EVENT", "TIMES")
     if not labels or times.size < 2 * len(labels):
-        return (), ()
+        return [], 0
     times = times.ravel(order="F")[: 2 * len(labels)].reshape(-1, 2).T  # stored in pairs
     seconds = 60.0 * times[0] + times[1] - raw.first_frame / raw.rate
     end = (raw.points.shape[0] - 1) / raw.rate
-    events: list[Event] = []
+    marks: list[tuple[Side, str, float]] = []
     outside = 0
-    for context, label, time in zip(contexts, labels, seconds, strict=False):
-        side, kind = SIDES.get(context.strip().lower()), KINDS.get(label.strip().lower())
-        if side is None or kind is None:
+    for context, stored, time in zip(contexts, labels, seconds, strict=False):
+        side, label = SIDES.get(context.strip().lower()), stored.strip().lower()
+        if side is None or label not in wanted:
             continue
         if -0.5 / raw.rate <= time <= end + 0.5 / raw.rate:
-            events.append(Event(side=side, kind=kind, time=min(max(float(time), 0.0), end), source="file"))
+            marks.append((side, label, min(max(float(time), 0.0), end)))
         else:
             outside += 1
-    warnings = (f"{outside} events of the file lie outside its stored frames and are not used",) if outside else ()
-    return tuple(sorted(events, key=lambda event: event.time)), warnings
+    return sorted(marks, key=lambda mark: mark[2]), outside
 
 
 def _other_channels(raw: RawRecording) -> dict[str, np.ndarray]:

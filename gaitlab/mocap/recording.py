@@ -9,6 +9,7 @@ import numpy as np
 Side = Literal["left", "right"]
 EventKind = Literal["foot_strike", "foot_off"]
 EventSource = Literal["file", "detected"]
+SoleChangeKind = Literal["foot_flat", "heel_off"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +21,16 @@ class Event:
     time: float
     """Time [s] from the first stored frame."""
     source: EventSource
+
+
+@dataclass(frozen=True, kw_only=True)
+class SoleChange:
+    """When a standing foot comes to lie flat, or its heel leaves the floor, as somebody marked it in the file."""
+
+    side: Side
+    kind: SoleChangeKind
+    time: float
+    """Time [s] from the first stored frame."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +65,8 @@ class Recording:
     Points that are positions are in metres."""
     force_plates: tuple[ForcePlate, ...] = ()
     events: tuple[Event, ...] = ()
+    sole_changes: tuple[SoleChange, ...] = ()
+    """Events "Foot Flat" and "Heel Off" of the file, in time order; mostly none."""
     parameters: Mapping[str, float] = field(default_factory=dict[str, float])
     """Subject parameters in SI units: mass, height, left_leg_length, left_knee_width, left_thigh_rotation ..."""
     analog: Mapping[str, np.ndarray] = field(default_factory=dict[str, np.ndarray])

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,14 +9,11 @@ import numpy as np
 
 from ..errors import OutputError
 from ..mocap.c3d import write_c3d
-from ..multibody.presets import ABLE_BODIED_CHILD, CP_CHILD
-from .demo_markers import body_parameters, standing_coordinates, with_markers
 from .demo_patterns import GaitPattern, demo_patterns
-from .demo_recording import Laboratory, static_recording, walk_recording
+from .demo_recording import Laboratory, walk_recording
+from .demo_subject import demo_subject
 from .demo_walk import demo_walk
 
-HEIGHTS = {child.name: child.height for child in (CP_CHILD, ABLE_BODIED_CHILD)}
-"""[m]"""
 WALKS: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "demo_cp_child": {"walk1": (1.20, 0.78), "walk2": (1.12, 0.84)},
     "demo_able_bodied_child": {"walk1": (1.04, 1.10), "walk2": (0.96, 1.20)},
@@ -57,21 +53,17 @@ def write_demo_data(directory: Path) -> None:
 
 
 def _write_child(folder: Path, pattern: GaitPattern) -> None:
-    subject = pattern.preset()
-    parameters = body_parameters(subject, HEIGHTS[subject.name])
-    subject = with_markers(subject, parameters, pattern.tilt)
-    standing = standing_coordinates(subject, pattern)
-    write_c3d(folder / "static.c3d", static_recording(subject, standing, parameters))
+    child = demo_subject(pattern)
+    write_c3d(folder / "static.c3d", child.static)
     truth: dict[str, Any] = {
-        "preset": subject.name,
-        "parameters": parameters,
-        "static_q": standing.round(7).tolist(),
+        "preset": child.preset.name,
+        "parameters": child.parameters,
+        "static_q": child.standing.round(7).tolist(),
         "markers_noise_m": {name: laboratory.noise for name, laboratory in LABORATORIES.items()},
         "walks": {},
     }
     for name, (stride_time, speed) in WALKS[pattern.name].items():
-        demo = demo_walk(pattern.paced(stride_time, speed), WEIGHTS[pattern.name])
-        walk = replace(demo.walk, subject=subject)
-        write_c3d(folder / f"{name}.c3d", walk_recording(name, walk, parameters, LABORATORIES[name]))
+        demo = demo_walk(pattern.paced(stride_time, speed), child.model, WEIGHTS[pattern.name])
+        write_c3d(folder / f"{name}.c3d", walk_recording(name, demo.walk, child.parameters, LABORATORIES[name]))
         truth["walks"][name] = demo.truth
     (folder / "truth.json").write_text(json.dumps(truth, separators=(",", ":")) + "\n")

@@ -80,18 +80,21 @@ def flat_ankle(subject: SubjectModel, side: Side) -> float:
 
 
 def target_coordinates(subject: SubjectModel, pattern: GaitPattern, share: np.ndarray) -> np.ndarray:
-    """Coordinates that the pattern asks for, without progression, at shares of the cycle (n,), shape (n, n_q)."""
+    """Coordinates that the pattern asks for, without progression, at shares of the cycle (n,), shape (n, n_q).
+
+    The subject's pelvis has the axes of the conventional gait model.
+    """
     q = np.zeros((len(share), subject.n_q))
     middle = pattern.contacts["right"].stance / pattern.stride_time / 2
     legs = sum(-segment.joint_offset[2] for segment in subject.segments[2:4])
     q[:, 1] = -pattern.sway * np.cos(2 * np.pi * (share - middle))
     q[:, 2] = 0.96 * legs + 0.04 * 1.5 + pattern.rise * np.cos(4 * np.pi * (share - middle))
-    q[:, 3] = pattern.curve("pelvis_tilt", share) - pattern.tilt
+    q[:, 3] = pattern.curve("pelvis_tilt", share)
     q[:, 4] = -pattern.curve("pelvis_obliquity", share)
     q[:, 5] = pattern.curve("pelvis_rotation", share)
     for side in SIDES:
         s, first, own = SIGN[side], FIRST_JOINT[side], share - pattern.delay(side) / pattern.stride_time
-        q[:, first] = pattern.tilt - pattern.curve("hip_flexion", own)
+        q[:, first] = -pattern.curve("hip_flexion", own)
         q[:, first + 1] = -s * pattern.curve("hip_adduction", own)
         q[:, first + 2] = -s * pattern.curve("hip_rotation", own)
         q[:, first + 3] = pattern.curve("knee_flexion", own)
@@ -99,9 +102,8 @@ def target_coordinates(subject: SubjectModel, pattern: GaitPattern, share: np.nd
     return q
 
 
-def reference_gait(pattern: GaitPattern) -> ReferenceGait:
-    """The pattern's gait on its subject with feet that stand."""
-    subject = pattern.preset()
+def reference_gait(pattern: GaitPattern, subject: SubjectModel) -> ReferenceGait:
+    """The pattern's gait on a subject with feet that stand."""
     fit = _Fit(subject=subject, pattern=pattern)
     coefficients, places = fit.start()
     for _ in range(N_ITERATIONS):

@@ -2,13 +2,9 @@
 
 All states are given at the boundaries of arcs (see `walking.identification`), so the problem falls apart into arcs that
 share only the weights. The weights are chosen for criteria divided by their values N_i on the tracked stride. The
-estimator divides by their values N'_i on the recorded, the optimal stride. With r_i = N'_i / N_i, the torque's floor f
-and its share r_t, the same problem has there the weights
-
-    theta'_i = k r_i theta_i  (and k r_t (theta_t + f) - f for torque),  k = (1 + f) / (sum_i r_i theta_i + r_t f),
-
-which sum to one, provided that the floor of accelerations is divided by k times their value on the optimal stride: a
-fixed point in one number.
+estimator divides by their values N'_i on the recorded, the optimal stride. The same problem has there the weights of
+`WalkLevel.restated`, provided that the floor of accelerations is divided by k times their value on the optimal stride:
+a fixed point in one number.
 """
 
 from dataclasses import dataclass, replace
@@ -89,7 +85,7 @@ def optimal_stride(tracked: TrackedRecording, weights: dict[str, float]) -> Opti
     change = np.inf
     for _ in range(REPETITIONS):
         criteria, accelerations = _stride_of_arcs(level, arcs)
-        scale = _restated(level, theta, criteria)[1]
+        scale = level.restated(theta, criteria)[1]
         change = abs(scale * accelerations / level.acceleration_normaliser - 1.0)
         if change < CHANGE:
             break
@@ -97,7 +93,7 @@ def optimal_stride(tracked: TrackedRecording, weights: dict[str, float]) -> Opti
         data = level.problem(theta).data
         arcs = [_again(arc, data, settings) for arc in arcs]
     criteria = _stride_of_arcs(level, arcs)[0]
-    true_weights, scale = _restated(level, theta, criteria)
+    true_weights, scale = level.restated(theta, criteria)
     return OptimalStride(
         arcs=tuple(arcs),
         criteria=settings.criteria,
@@ -107,15 +103,6 @@ def optimal_stride(tracked: TrackedRecording, weights: dict[str, float]) -> Opti
         change=float(change),
         settings=settings,
     )
-
-
-def _restated(level: WalkLevel, theta: np.ndarray, criteria: np.ndarray) -> tuple[np.ndarray, float]:
-    """Weights theta' and k of the module's formula."""
-    ratio, floor = criteria / level.all_normalisers, level.settings.torque_floor
-    scale = float((1.0 + floor) / (ratio[level.indices] @ theta + ratio[level.torque] * floor))
-    restated = scale * ratio[level.indices] * theta
-    restated[level.indices.index(level.torque)] += floor * (scale * ratio[level.torque] - 1.0)
-    return restated, scale
 
 
 def _bounds(tracked: TrackedRecording, settings: IdentificationSettings) -> np.ndarray:

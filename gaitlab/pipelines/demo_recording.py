@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mocap.recording import Event, ForcePlate, Recording
+from ..mocap.recording import Event, ForcePlate, Recording, SoleChange
 from ..multibody.kinematics import point_positions
 from ..multibody.subject import SubjectModel
 
@@ -28,6 +28,7 @@ class SimulatedWalk:
     forces: Mapping[str, np.ndarray]
     """Contact point to the force of the floor on it at `PLATE_RATE` [N], shape (10 n - 9, 3)."""
     events: tuple[Event, ...]
+    sole_changes: tuple[SoleChange, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,6 +56,7 @@ def walk_recording(
         markers=_measured(gait, laboratory, middle),
         force_plates=_plates(walk, laboratory, middle),
         events=walk.events,
+        sole_changes=walk.sole_changes,
         parameters=parameters,
     )
 

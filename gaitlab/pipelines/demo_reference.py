@@ -3,21 +3,21 @@
 import casadi as ca
 import numpy as np
 
-from ..mocap.recording import Event, EventKind, Side
+from ..mocap.recording import Event, EventKind, Side, SoleChange, SoleChangeKind
 from ..multibody.dynamics import inverse_dynamics, layout_of, parameter_vector
 from .demo_gait import ReferenceGait, in_contact
 from .demo_patterns import SIDES, GaitPattern
 from .demo_recording import PLATE_RATE, RATE, SimulatedWalk
 
-BEFORE, AFTER = 0.24, 0.32
-"""A recording begins so long [s] before a left strike, and ends so long after the left strike two strides later."""
+STRIDES = 3
+"""Strides in a recording: whole ones, so that the line between its ends is the direction of the walk. The right stride
+in the middle is the optimal one."""
 ROLLING = 0.04  # [s], in which load moves from one contact point to the next
 
 
 def recording_time(pattern: GaitPattern, rate: float) -> np.ndarray:
     """Times of samples at a rate [Hz], 0 at the right foot strike in the recording, shape (n,) [s]."""
-    first, last = -pattern.stride_time / 2 - BEFORE, 1.5 * pattern.stride_time + AFTER
-    return first + np.arange(round((last - first) * rate) + 1) / rate
+    return -pattern.stride_time + np.arange(round(STRIDES * pattern.stride_time * rate) + 1) / rate
 
 
 def reference_walk(gait: ReferenceGait) -> SimulatedWalk:
@@ -29,23 +29,41 @@ def reference_walk(gait: ReferenceGait) -> SimulatedWalk:
         dense_q=gait.coordinates(dense),
         forces=_shared_forces(gait, dense),
         events=walk_events(gait.pattern),
+        sole_changes=walk_sole_changes(gait.pattern),
     )
 
 
 def walk_events(pattern: GaitPattern) -> tuple[Event, ...]:
     """Foot strikes and foot offs of a recording, times from its first frame, in time order."""
-    time, found = recording_time(pattern, RATE), list[Event]()
+    found: list[Event] = []
     for side in SIDES:
         kinds: tuple[tuple[EventKind, float], ...] = (
             ("foot_strike", 0.0),
             ("foot_off", pattern.contacts[side].stance),
         )
         for kind, after in kinds:
-            for k in range(-2, 3):
-                at = pattern.delay(side) + after + k * pattern.stride_time
-                if time[0] < at < time[-1]:
-                    found.append(Event(side=side, kind=kind, time=at - time[0], source="file"))
+            found += [
+                Event(side=side, kind=kind, time=time, source="file") for time in _recorded_times(pattern, side, after)
+            ]
     return tuple(sorted(found, key=lambda event: event.time))
+
+
+def walk_sole_changes(pattern: GaitPattern) -> tuple[SoleChange, ...]:
+    """Foot flats and heel offs of a recording, times from its first frame, in time order."""
+    found: list[SoleChange] = []
+    for side in SIDES:
+        heel, toe = pattern.contacts[side].heel, pattern.contacts[side].toe
+        kinds: tuple[tuple[SoleChangeKind, float], ...] = (("foot_flat", max(heel[0], toe[0])), ("heel_off", heel[1]))
+        for kind, after in kinds:
+            found += [SoleChange(side=side, kind=kind, time=time) for time in _recorded_times(pattern, side, after)]
+    return tuple(sorted(found, key=lambda change: change.time))
+
+
+def _recorded_times(pattern: GaitPattern, side: Side, after: float) -> list[float]:
+    """Times from the first frame [s] of what happens so long [s] after each foot strike of a side."""
+    time = recording_time(pattern, RATE)
+    at = [pattern.delay(side) + after + k * pattern.stride_time for k in range(-2, 3)]
+    return [t - float(time[0]) for t in at if time[0] < t < time[-1]]
 
 
 def _shared_forces(gait: ReferenceGait, time: np.ndarray) -> dict[str, np.ndarray]:

@@ -8,13 +8,14 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from ..multibody.dynamics import GRAVITY
+from ..multibody.subject import SubjectModel
 from ..transcription.hermite import GAUSS_POINTS
 from ..walking.model import POINTS
 from .demo_gait import reference_gait
 from .demo_optimum import OptimalStride, optimal_stride
 from .demo_patterns import GaitPattern
 from .demo_recording import PLATE_RATE, RATE, SimulatedWalk
-from .demo_reference import recording_time, walk_events
+from .demo_reference import recording_time, walk_events, walk_sole_changes
 from .demo_simulation import ForwardDynamics, SimulatedArc, simulate_arc
 from .demo_tracking import INTERVAL, TrackedRecording, track_reference
 
@@ -30,13 +31,13 @@ class DemoWalk:
     truth: Mapping[str, Any]
 
 
-def demo_walk(pattern: GaitPattern, weights: dict[str, float]) -> DemoWalk:
-    """Simulate a walk whose right stride is optimal for known weights.
+def demo_walk(pattern: GaitPattern, subject: SubjectModel, weights: dict[str, float]) -> DemoWalk:
+    """Simulate a walk of a subject whose right stride is optimal for known weights.
 
     Raises:
         NotConverged: The walk has no solution.
     """
-    tracked = track_reference(reference_gait(pattern))
+    tracked = track_reference(reference_gait(pattern, subject))
     stride = optimal_stride(tracked, weights)
     dynamics = ForwardDynamics(tracked.walk.stride.subject)
     arcs = [simulate_arc(dynamics, arc) for arc in stride.arcs]
@@ -62,6 +63,7 @@ def _joined(tracked: TrackedRecording, stride: OptimalStride, arcs: list[Simulat
         dense_q=q,
         forces={name: forces[:, 3 * i : 3 * i + 3] for i, name in enumerate(POINTS)},
         events=walk_events(tracked.pattern),
+        sole_changes=walk_sole_changes(tracked.pattern),
     )
 
 

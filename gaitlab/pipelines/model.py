@@ -7,12 +7,14 @@ import numpy as np
 from ..errors import InvalidSubject
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.kinematics import InverseKinematics, solve_inverse_kinematics
+from ..inverse.kinematics_settings import InverseKinematicsSettings
 from ..mocap.recording import Recording
 from ..multibody.kinematics import coordinates_from_poses
 from ..multibody.scaling import MeasuredBody, SubjectSettings, build_subject, segment_poses
 from ..multibody.subject import SubjectModel
 from .gait_frame import lab_to_gait, rotation_gait_to_lab
 
+UNSMOOTHED = InverseKinematicsSettings(cut_off=0.0, prior_lever=0.002, tolerance=1e-6)
 SEGMENTS = ("pelvis", *(f"{side}_{kind}" for side in ("right", "left") for kind in ("thigh", "shank", "foot")))
 
 
@@ -44,6 +46,17 @@ def whole_model_motion(
     return solve_inverse_kinematics(
         subject, body.markers, recording.rate, joint_centres=body.joint_centres, initial=start
     )
+
+
+def unsmoothed_motion(
+    subject: SubjectModel, recording: Recording, heading: float, motion: InverseKinematics
+) -> np.ndarray:
+    """Coordinates [m, rad] that the markers of each frame alone tell, shape (n_frames, n_q), NaN where not known.
+
+    For estimates that want white noise; from the smoothed motion, which tells which turn of an angle is meant.
+    """
+    markers = {name: lab_to_gait(positions, heading) for name, positions in recording.markers.items()}
+    return solve_inverse_kinematics(subject, markers, recording.rate, UNSMOOTHED, initial=motion.q).q
 
 
 def motion_warnings(motion: InverseKinematics) -> tuple[str, ...]:

@@ -16,12 +16,13 @@ from ..mocap.recording import Event, Recording
 from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
 from ..nlp.workers import Workers, usable_processors
-from ..walking.contact_phases import contact_phases, foot_directions
+from ..walking.contact_phases import GaitEvents, contact_phases, foot_directions
 from ..walking.contact_schedule import Landing, ScheduleSettings, contact_stages
 from ..walking.criteria import by_name
 from ..walking.explanation import Explanation, ExplanationSettings, explain
 from ..walking.identification import IdentificationSettings
 from ..walking.identified_gait import IdentifiedGait, identified_gait
+from ..walking.joint_search import measured_frames
 from ..walking.model import walking_functions
 from ..walking.tracking import MeasuredStride, measured_stride
 from .optimal_arrays import optimal_arrays
@@ -43,6 +44,8 @@ class WeightsRequest:
     subject: SubjectModel
     q: np.ndarray
     """Measured coordinates, gait frame [m, rad], shape (n_frames, n_q); NaN where markers are missing."""
+    unsmoothed: np.ndarray
+    """The same from the markers of single frames, shape (n_frames, n_q)."""
     heading: float
     """Direction of the gait frame's x axis in the laboratory [rad]."""
     criteria: tuple[str, ...]
@@ -113,7 +116,8 @@ def replace_strides(entry: WeightsEntry, strides: list[StrideWeights], unseen: d
 def usable_strides(request: WeightsRequest) -> tuple[list[tuple[Cycle, MeasuredStride]], tuple[str, ...]]:
     """Strides with known coordinates and a contact schedule, most central first, and why others were left out."""
     recording = request.recording
-    phases = contact_phases(request.subject, request.q, recording.rate, request.events)
+    feet = GaitEvents(feet=request.events, soles=recording.sole_changes)
+    phases = contact_phases(request.subject, request.q, recording.rate, feet)
     directions = foot_directions(request.subject, request.q, phases)
     settings = ScheduleSettings(landing=request.landing)
     middle = 0.5 * (recording.n_frames - 1) / recording.rate
@@ -166,7 +170,8 @@ def _explain_all(
         begin = perf_counter()
         try:
             # The first stride carries the comparison with other weights; the others are there for the spread.
-            found = explain(stride, replace(settings, single_criteria=not explained), report, workers)
+            frames = measured_frames(stride, request.unsmoothed, request.recording.rate)
+            found = explain(stride, replace(settings, single_criteria=not explained), report, workers, frames)
         except NotConverged as error:
             failed.append(f"{where}: {error}")
             continue

@@ -15,6 +15,15 @@ AT_BOUND = 1e-4
 LARGE_FLOORS = 0.2
 """Share of the floors in the cost above which the weights come with a caution; healthy strides have 0.03 to 0.06."""
 
+TRACKED = (
+    "The standard deviations hold the misfit between those instants, not errors of the given states themselves, to "
+    "which the weights are sensitive. Read differences between strides as a lower bound of what is uncertain."
+)
+ESTIMATED = (
+    "The model explains this walk to within the noise of its measurement: the states at those instants were estimated "
+    "together with the weights, from every frame, and the standard deviations hold their uncertainty, too."
+)
+
 FLOORS = ("torque_floor", "smoothness_floor", "contact_force_floor")
 
 JOINTS = (
@@ -109,9 +118,8 @@ def _notes(found: Explanation) -> list[str]:
         f"{1000 * level.longest_arc:.0f} ms apart) are given to the optimal control problem as boundary values; the "
         "fit counts the instants between them.",
         f"Besides the criteria the cost holds a torque floor of {settings.torque_floor:g} and a smoothness floor of "
-        f"{settings.smoothness_floor:g} of their tracked values.",
-        "The standard deviations hold the misfit between those instants, not errors of the given states themselves, to "
-        "which the weights are sensitive. Read differences between strides as a lower bound of what is uncertain.",
+        f"{settings.smoothness_floor:g} of their {'optimal' if found.states_estimated else 'tracked'} values.",
+        ESTIMATED if found.states_estimated else TRACKED,
     ]
     terms = found.optimum.cost_terms()
     floors = sum(terms[name] for name in FLOORS) / sum(terms.values())

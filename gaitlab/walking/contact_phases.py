@@ -1,12 +1,12 @@
 """Which part of each foot stands on the floor, frame by frame, from events and the model's own sole."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import InvalidRecording
-from ..mocap.recording import Event, Side
+from ..mocap.recording import Event, Side, SoleChange, SoleChangeKind
 from ..multibody.kinematics import point_positions
 from ..multibody.subject import SubjectModel
 
@@ -37,21 +37,33 @@ class SoleSettings:
 DEFAULTS = SoleSettings()
 
 
+@dataclass(frozen=True, kw_only=True)
+class GaitEvents:
+    """What is known of the feet of a trial from events, file's or detected."""
+
+    feet: Sequence[Event]
+    """Foot strikes and foot offs of both sides, in any order."""
+    soles: Sequence[SoleChange] = ()
+    """Foot flats and heel offs that somebody marked."""
+
+
 def contact_phases(
-    subject: SubjectModel, q: np.ndarray, rate: float, events: Sequence[Event], settings: SoleSettings = DEFAULTS
+    subject: SubjectModel, q: np.ndarray, rate: float, events: GaitEvents, settings: SoleSettings = DEFAULTS
 ) -> np.ndarray:
     """State of the right and the left foot: "free", "heel", "flat" or "toe", shape (n_frames, 2).
 
     A foot stands from the frame nearest to a foot strike up to the one nearest to the next foot off. Which part stands
     follows from h = z_heel - z_toe of the model's contact points, less its value in foot flat: heel while
-    h < -toe_height, toe while h > heel_height, flat between. Nothing is assumed about their order.
+    h < -toe_height, toe while h > heel_height, flat between. Nothing is assumed about their order. Where a foot flat or
+    heel off is marked in a stance, the marks are believed instead: flat from the one to the other, toe after the heel
+    off, and before the foot flat whichever part is lower there.
 
     Args:
         subject: The person's model.
         q: Coordinates, gait frame [m, rad], shape (n_frames, n_q). Where NaN, h is interpolated within the stance;
             a stance without any known frame is taken as flat.
         rate: Frames per second [Hz].
-        events: Foot strikes and foot offs of both sides, in any order.
+        events: Of both sides.
         settings: Thresholds.
 
     Raises:
@@ -62,12 +74,18 @@ def contact_phases(
     phases = np.full((len(q), 2), FREE, dtype="<U4")
     for column, side in enumerate(SIDES):
         heel, toe = points[f"{side}_heel"], points[f"{side}_toe"]
-        stances = stance_frames(events, side, rate, len(q))
+        stances = stance_frames(events.feet, side, rate, len(q))
+        marks = [(change.kind, round(change.time * rate)) for change in events.soles if change.side == side]
         rise = heel[:, 2] - toe[:, 2]
         resting = np.maximum(_speed(heel, rate), _speed(toe, rate)) < settings.resting_speed * walking_speed
         rise = rise - _flat_level(rise, resting, stances, settings.largest_tilt)
         for stance in stances:
-            phases[stance, column] = _parts(rise[stance], settings)
+            own = {kind: frame - stance.start for kind, frame in marks if stance.start <= frame <= stance.stop}
+            known = np.isfinite(rise[stance])
+            parts = (
+                _parts(rise[stance], settings) if not own else _marked_parts(np.where(known, rise[stance], 0.0), own)
+            )
+            phases[stance, column] = parts
     return phases
 
 
@@ -126,6 +144,14 @@ def _parts(rise: np.ndarray, settings: SoleSettings) -> np.ndarray:
     frames = np.arange(len(rise))
     filled = np.interp(frames, frames[known], rise[known])
     return np.where(filled < -settings.toe_height, HEEL, np.where(filled > settings.heel_height, TOE, FLAT))
+
+
+def _marked_parts(rise: np.ndarray, marks: Mapping[SoleChangeKind, int]) -> np.ndarray:
+    """States along one stance from marked frames and the heel's height over the toe [m], shape (n,)."""
+    frames = np.arange(len(rise))
+    flat, off = marks.get("foot_flat", 0), marks.get("heel_off", len(rise))
+    first = HEEL if np.mean(rise[: max(flat, 1)]) < 0.0 else TOE
+    return np.where(frames < flat, first, np.where(frames < off, FLAT, TOE))
 
 
 def _speed(positions: np.ndarray, rate: float) -> np.ndarray:

@@ -12,6 +12,7 @@ from ..errors import NotConverged
 from ..nlp.sparse_solution import Status
 from ..nlp.workers import Workers
 from .identification import IdentificationSettings, WalkLevel, WalkOptimum
+from .joint_search import JointSearch, MeasuredFrames, unsmoothed_stride
 from .tracking import MeasuredStride, TrackedWalk, TrackingSettings, track
 
 CERTIFICATE = 1e-6
@@ -32,6 +33,10 @@ class ExplanationSettings:
     tracking: TrackingSettings = field(default_factory=TrackingSettings)
     identification: IdentificationSettings = field(default_factory=IdentificationSettings)
     method: ImplicitGaussNewton = field(default_factory=ImplicitGaussNewton)
+    joint: JointSearch = field(default_factory=JointSearch)
+    explained_within: float = 0.008
+    """A walk tracked closer than this [rad, m] is explained to within its noise: then the states between arcs are
+    estimated together with the weights. Real walks so far: 0.016 to 0.027."""
     single_criteria: bool = True
     """Whether to solve for each criterion alone: what the weights must beat, and further starts of the search."""
 
@@ -48,6 +53,8 @@ class Explanation:
     """Fit of equal weights; None where that problem was not solved."""
     single_rms: Mapping[str, float | None]
     """Fit of each criterion alone; empty where it was not asked for."""
+    states_estimated: bool = False
+    """Whether the states between arcs were estimated with the weights; else they are those of the tracked walk."""
     tracking_seconds: float | None = None
     """Time that the tracking took [s]; None where it was done before."""
 
@@ -63,8 +70,11 @@ def explain(
     settings: ExplanationSettings | None = None,
     report: Report | None = None,
     workers: Workers | None = None,
+    frames: MeasuredFrames | None = None,
 ) -> Explanation:
     """Track a stride and find the weights of its criteria, on one processor or with the help of workers.
+
+    With the stride's unsmoothed frames, the states between arcs can be estimated, see `joint_search`.
 
     Raises:
         NotConverged: the tracking problem or the optimal control problem with equal weights was not solved.
@@ -74,7 +84,7 @@ def explain(
     tracked = track(stride, settings.tracking, _part(report, "tracking"))
     seconds = perf_counter() - begin
     _require(tracked.solution.status, "tracking the measured stride", tracked.solution.iterations)
-    return replace(explain_tracked(tracked, settings, report, workers), tracking_seconds=seconds)
+    return replace(explain_tracked(tracked, settings, report, workers, frames), tracking_seconds=seconds)
 
 
 def explain_tracked(
@@ -82,13 +92,16 @@ def explain_tracked(
     settings: ExplanationSettings | None = None,
     report: Report | None = None,
     workers: Workers | None = None,
+    frames: MeasuredFrames | None = None,
 ) -> Explanation:
     """Find the weights of the criteria of a tracked stride. Raises `errors.NotConverged` as `explain` does."""
     settings = settings or ExplanationSettings()
+    if frames is not None and tracked.rms <= settings.explained_within:
+        found = _explain_with_states(tracked, frames, settings, report, workers)
+        if found is not None:
+            return found
     level = WalkLevel(tracked, settings.identification, workers)
-    theta = np.full(level.n_theta, 1.0 / level.n_theta)
-    equal = level.from_tracking(theta, _arcs(report, "equal weights"))
-    _require(equal.solution.status, "the optimal control problem without tracking", equal.solution.iterations)
+    theta, equal = _equal_weights(level, report)
     singles = single_criteria(level, equal, report) if settings.single_criteria else []
     candidates = [(theta, equal), *((vertex, r) for vertex, r in singles if _solved(r))]
     best = min(candidates, key=lambda candidate: rms(candidate[1].residual))
@@ -96,17 +109,56 @@ def explain_tracked(
     starts = [best] if best is candidates[0] else [best, candidates[0]]
     estimates = [_search(level, settings.method, start, report) for start in starts]
     estimate = min(estimates, key=lambda found: found.rms)
+    return _explanation(level, estimate, equal, singles)
+
+
+def _explain_with_states(
+    tracked: TrackedWalk,
+    frames: MeasuredFrames,
+    settings: ExplanationSettings,
+    report: Report | None,
+    workers: Workers | None,
+) -> Explanation | None:
+    """Weights and states between arcs together; None where that does not converge."""
+    stride = unsmoothed_stride(tracked.stride, frames)
+    close = track(stride, settings.tracking, _part(report, "tracking single frames"))
+    if close.solution.status is not Status.SOLVED:
+        return None
+    level = WalkLevel(close, settings.identification, workers)
+    start = _equal_weights(level, report)
+    level, estimate = settings.joint.solve(level, frames, start, _part(report, "weights and states together"))
+    if not estimate.converged:
+        return None
+    found = WalkOptimum(level, level.problem(estimate.theta), estimate.response.solution)
+    equal = level.respond_from_afar(start[0], found.solution, _arcs(report, "equal weights"))
+    singles = single_criteria(level, found, report) if settings.single_criteria else []
+    return replace(_explanation(level, estimate, equal, singles), tracked=tracked, states_estimated=True)
+
+
+def _equal_weights(level: WalkLevel, report: Report | None) -> tuple[np.ndarray, WalkOptimum]:
+    theta = np.full(level.n_theta, 1.0 / level.n_theta)
+    equal = level.from_tracking(theta, _arcs(report, "equal weights"))
+    _require(equal.solution.status, "the optimal control problem without tracking", equal.solution.iterations)
+    return theta, equal
+
+
+def _explanation(
+    level: WalkLevel, estimate: WeightEstimate, equal: WalkOptimum, singles: list[tuple[np.ndarray, WalkOptimum]]
+) -> Explanation:
     return Explanation(
-        tracked=tracked,
+        tracked=level.tracked,
         level=level,
         optimum=WalkOptimum(level, level.problem(estimate.theta), estimate.response.solution),
         estimate=estimate,
-        equal_rms=rms(equal.residual),
+        equal_rms=_fit(equal),
         single_rms={
-            name: rms(r.residual) if _solved(r) else None
-            for name, (_, r) in zip(level.settings.criteria, singles, strict=False)
+            name: _fit(response) for name, (_, response) in zip(level.settings.criteria, singles, strict=False)
         },
     )
+
+
+def _fit(response: WalkOptimum) -> float | None:
+    return rms(response.residual) if _solved(response) else None
 
 
 def _search(

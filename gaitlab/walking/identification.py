@@ -9,6 +9,7 @@ its axis) may turn freely at almost no torque.
 """
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -25,6 +26,7 @@ from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalProblem, MechanicalStructure
 from .arcs import Arcs
 from .criteria import ALL, THESIS, by_name
+from .given_states import coloured_moves
 from .model import ROOT, walking_functions
 from .tracking import N_FORCES, TrackedWalk
 
@@ -68,9 +70,19 @@ class WalkOptimum:
         return Sensitivity(self.problem, self.solution)
 
     @cached_property
-    def _moves(self) -> np.ndarray:
+    def moves(self) -> np.ndarray:
+        """Derivative of (w, lam_g) in the weights, shape (n_w + n_g, n_theta)."""
         gradients = self.problem.criterion_gradients(self.solution.w)[:, self.level.indices]
         return self.sensitivity.of_objective(gradients / self.level.normalisers)
+
+    @cached_property
+    def moves_of_given(self) -> np.ndarray:
+        """Derivative of (w, lam_g) in the given states, coloured (see `given_states`), shape (n_w + n_g, 4 n_q)."""
+        structure = self.level.structure
+        equalities = coloured_moves(structure, len(self.level.given_nodes))
+        nothing = np.zeros((structure.n_w, equalities.shape[1]))
+        still = np.zeros((structure.sparse.n_c, equalities.shape[1]))
+        return self.sensitivity.of_conditions(nothing, equalities, still)
 
     def residual_by_time(self) -> np.ndarray:
         """Optimal minus measured coordinates at the nodes that are not given, shape (n_free, n_q)."""
@@ -86,12 +98,12 @@ class WalkOptimum:
         """Derivative of the residual in the weights, shape (n_free * n_q, n_theta)."""
         n_q = self.level.tracked.stride.n_q
         n_x = self.level.tracked.stride.reference.size
-        moves = self._moves[:n_x].reshape(-1, 2 * n_q, len(self.level.indices))
+        moves = self.moves[:n_x].reshape(-1, 2 * n_q, len(self.level.indices))
         return moves[self.level.free, :n_q].reshape(-1, len(self.level.indices))
 
     def predict(self, step: np.ndarray) -> SparseSolution:
         """First-order prediction after a step in the weights, shape (n_theta,)."""
-        return self.sensitivity.predict(self._moves @ step)
+        return self.sensitivity.predict(self.moves @ step)
 
     def cost_terms(self) -> dict[str, float]:
         """Weighted parts of the cost: each criterion, the torque floor, the smoothness floor, contact forces."""
@@ -117,11 +129,51 @@ class WalkLevel:
         self.arcs = Arcs(self.structure, layout_of(tracked.stride.subject))
         self.smooth = np.concatenate([np.zeros(3), np.ones(tracked.stride.n_q - 3)])
         self.acceleration_normaliser = self._acceleration_cost(tracked.problem, tracked.solution.w)
+        self.given = tracked.states[self.given_nodes]
 
     @property
     def n_theta(self) -> int:
         """Number of weights."""
         return len(self.indices)
+
+    def with_given(self, states: np.ndarray) -> "WalkLevel":
+        """The same level with other states at the given nodes, shape (n_given, 2 n_q)."""
+        level = copy(self)
+        level.given = states
+        return level
+
+    def normalised_at(self, optimum: WalkOptimum, theta: np.ndarray) -> tuple["WalkLevel", np.ndarray]:
+        """The level whose criteria and floors are divided by their values on an optimum, and theta restated for it.
+
+        See `restated` for the weights, shape (n_theta,).
+        """
+        level, w = copy(self), optimum.solution.w
+        criteria = optimum.problem.criteria(w)
+        weights = np.maximum(self.restated(theta, criteria)[0], 0.0)
+        level.all_normalisers, level.normalisers = criteria, criteria[self.indices]
+        level.acceleration_normaliser = self._acceleration_cost(optimum.problem, w)
+        return level, weights / weights.sum()
+
+    def restated(self, theta: np.ndarray, criteria: np.ndarray) -> tuple[np.ndarray, float]:
+        """Weights theta' for criteria divided by other values N'_i, shape (n_all_criteria,), that mean the same.
+
+        With r_i = N'_i / N_i, the torque's floor f and its share r_t,
+
+            theta'_i = k r_i theta_i  (k r_t (theta_t + f) - f for torque),  k = (1 + f) / (sum_i r_i theta_i + r_t f),
+
+        which sum to one. Returns theta', shape (n_theta,), and k; the floor of accelerations means the same when it is
+        divided by k times what divides it now. Without torque among the criteria, k = 1 / sum_i r_i theta_i, and the
+        torque's floor changes a little.
+        """
+        ratio = criteria / self.all_normalisers
+        weights, floor = ratio[self.indices] * theta, self.settings.torque_floor
+        if self.torque not in self.indices:
+            scale = 1.0 / float(weights.sum())
+            return scale * weights, scale
+        scale = (1.0 + floor) / float(weights.sum() + ratio[self.torque] * floor)
+        weights = scale * weights
+        weights[self.indices.index(self.torque)] += floor * (scale * ratio[self.torque] - 1.0)
+        return weights, scale
 
     def _layout(self) -> MechanicalLayout:
         stride, tracked = self.tracked.stride, self.tracked
@@ -142,10 +194,12 @@ class WalkLevel:
         weights = np.zeros(len(ALL))
         weights[self.indices] = theta / self.normalisers
         weights[self.torque] += settings.torque_floor / self.all_normalisers[self.torque]
+        given = self.tracked.states.copy()
+        given[self.given_nodes] = self.given
         data = replace(
             self.tracked.problem.data,
             theta=weights,
-            given=self.tracked.states,
+            given=given,
             tracking=np.zeros_like(self.tracked.problem.data.tracking),
             acceleration_weights=2.0 * settings.smoothness_floor / self.acceleration_normaliser * self.smooth,
             force_weight=settings.force_weight,

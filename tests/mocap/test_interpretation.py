@@ -3,17 +3,20 @@ import pytest
 from raw_file import raw_recording
 
 from gaitlab.errors import InvalidRecording
-from gaitlab.mocap.interpretation import file_events, interpret
+from gaitlab.mocap.interpretation import file_events, file_sole_changes, interpret
 
 
-def events(times: list[float], labels: list[str], contexts: list[str], minutes: float = 0.0):
+def marked(times: list[float], labels: list[str], contexts: list[str], minutes: float = 0.0):
     group = {
         "LABELS": tuple(labels),
         "CONTEXTS": tuple(contexts),
         "TIMES": np.array([np.full(len(times), minutes), times]),
     }
-    raw = raw_recording(points=np.ones((300, 1, 3)), first_frame=150, parameters={"EVENT": group})
-    return file_events(raw)
+    return raw_recording(points=np.ones((300, 1, 3)), first_frame=150, parameters={"EVENT": group})
+
+
+def events(*columns, **minutes):
+    return file_events(marked(*columns, **minutes))
 
 
 def test_event_times_count_from_the_first_stored_frame():
@@ -35,6 +38,13 @@ def test_events_outside_the_stored_frames_are_dropped_with_a_warning():
 def test_minutes_and_other_events():
     found, _ = events([1.6, 2.0], ["Foot Strike", "Event"], ["Left", "General"], minutes=1.0)
     assert found == ()
+
+
+def test_changes_of_the_sole_are_no_events_of_the_gait():
+    raw = marked([2.0, 1.6, 1.8], ["Heel Rise", "foot flat", "Foot Off"], ["Left", "Right", "Right"])
+    assert [e.kind for e in file_events(raw)[0]] == ["foot_off"]
+    changes = [(c.side, c.kind, round(c.time, 6)) for c in file_sole_changes(raw)]
+    assert changes == [("right", "foot_flat", 0.1), ("left", "heel_off", 0.5)]
 
 
 def test_more_labels_than_times_give_no_events():

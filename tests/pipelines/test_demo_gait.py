@@ -6,13 +6,15 @@ import pytest
 from gaitlab.multibody.kinematics import point_positions
 from gaitlab.pipelines.demo_gait import in_contact, reference_gait, target_coordinates
 from gaitlab.pipelines.demo_patterns import demo_patterns
+from gaitlab.pipelines.demo_subject import demo_subject
 
 PATTERNS = {pattern.name: pattern for pattern in demo_patterns()}
 
 
 @pytest.fixture(scope="module", params=PATTERNS)
 def gait(request):
-    return reference_gait(PATTERNS[request.param])
+    pattern = PATTERNS[request.param]
+    return reference_gait(pattern, demo_subject(pattern).model)
 
 
 def test_a_stride_later_the_body_is_the_same_but_further(gait):

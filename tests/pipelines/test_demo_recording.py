@@ -1,7 +1,5 @@
 """Markers and plates of the demo children against the truth they were made from."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,10 +8,10 @@ from gaitlab.inverse.static import calibrate_subject
 from gaitlab.mocap.force_plates import centre_of_pressure
 from gaitlab.multibody.kinematics import forward_kinematics, point_positions
 from gaitlab.pipelines.demo_gait import reference_gait
-from gaitlab.pipelines.demo_markers import body_parameters, standing_coordinates, with_markers
 from gaitlab.pipelines.demo_patterns import demo_patterns
-from gaitlab.pipelines.demo_recording import Laboratory, static_recording, walk_recording
+from gaitlab.pipelines.demo_recording import Laboratory, walk_recording
 from gaitlab.pipelines.demo_reference import reference_walk
+from gaitlab.pipelines.demo_subject import demo_subject
 
 JOINTS = {"hip": "thigh", "knee": "shank", "ankle": "foot"}
 
@@ -21,13 +19,9 @@ JOINTS = {"hip": "thigh", "knee": "shank", "ankle": "foot"}
 @pytest.fixture(scope="module", params=[0, 1], ids=["cp", "able"])
 def case(request):
     pattern = demo_patterns()[request.param]
-    preset = pattern.preset()
-    parameters = body_parameters(preset, 1.5)
-    subject = with_markers(preset, parameters, pattern.tilt)
-    standing = standing_coordinates(subject, pattern)
-    static = static_recording(subject, standing, parameters)
-    walk = replace(reference_walk(reference_gait(pattern)), subject=subject)
-    return subject, static, walk, walk_recording("walk", walk, parameters, Laboratory())
+    child = demo_subject(pattern)
+    walk = reference_walk(reference_gait(pattern, child.model))
+    return child.model, child.static, walk, walk_recording("walk", walk, child.parameters, Laboratory())
 
 
 def test_the_conventional_model_finds_the_joint_centres(case):

@@ -14,8 +14,8 @@ from gaitlab.bilevel.implicit_gauss_newton import ImplicitGaussNewton
 from gaitlab.bilevel.result import rms
 from gaitlab.pipelines.bundled import DEMO_CHILDREN, demo_folder
 from gaitlab.pipelines.demo_data import WALKS
-from gaitlab.pipelines.demo_gait import reference_gait
 from gaitlab.pipelines.demo_patterns import GRID, demo_patterns
+from gaitlab.pipelines.demo_subject import demo_subject
 from gaitlab.pipelines.demo_tracking import pattern_stages
 from gaitlab.walking.arcs import part_of_stages
 from gaitlab.walking.identification import IdentificationSettings, WalkLevel, arc_boundaries
@@ -32,7 +32,7 @@ def recorded(child, walk):
     (pattern,) = (p.paced(*WALKS[child][walk]) for p in demo_patterns() if p.name == child)
     start, end = truth["optimal_stride_s"]
     stages = part_of_stages(pattern_stages(pattern, GRID), round(start / GRID), round(end / GRID))
-    stride = measured_stride(reference_gait(pattern).subject, stages, start, np.array(truth["q"]), truth["rate_hz"])
+    stride = measured_stride(demo_subject(pattern).model, stages, start, np.array(truth["q"]), truth["rate_hz"])
     return truth, stride
 
 

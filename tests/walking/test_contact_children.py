@@ -9,7 +9,7 @@ from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.gait_frame import lab_to_gait
 from gaitlab.pipelines.options import AnalysisOptions
 from gaitlab.pipelines.walk_arrays import plate_at_frames
-from gaitlab.walking.contact_phases import contact_phases, foot_directions
+from gaitlab.walking.contact_phases import GaitEvents, contact_phases, foot_directions
 from gaitlab.walking.contact_schedule import contact_stages
 
 pytestmark = pytest.mark.shared_data
@@ -22,7 +22,9 @@ def walks(shared_data):
     for walk in sorted((shared_data / "children").glob("*/straight*.c3d")):
         sources = Sources(walks=(walk,), static=next(walk.parent.glob("static*.c3d")))
         trial = analyse_files(sources, AnalysisOptions(weights=False)).trials[0]
-        found.append((trial, contact_phases(trial.subject, trial.motion.q, trial.recording.rate, trial.events)))
+        found.append(
+            (trial, contact_phases(trial.subject, trial.motion.q, trial.recording.rate, GaitEvents(feet=trial.events)))
+        )
     return found
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from gaitlab.errors import InvalidRecording
-from gaitlab.mocap.recording import Event
+from gaitlab.mocap.recording import Event, SoleChange
 from gaitlab.multibody.subject import PointOnSegment, Segment, SubjectModel
-from gaitlab.walking.contact_phases import contact_phases, foot_directions
+from gaitlab.walking.contact_phases import GaitEvents, contact_phases, foot_directions
 
 RATE, N = 100.0, 100
 STRIKE, OFF = 0.2, 0.8
@@ -18,12 +18,13 @@ def event(side, kind, time):
     return Event(side=side, kind=kind, time=time, source="detected")
 
 
-EVENTS = (
+FEET = (
     event("right", "foot_strike", STRIKE),
     event("right", "foot_off", OFF),
     event("left", "foot_off", 0.3),
     event("left", "foot_strike", 0.7),
 )
+EVENTS = GaitEvents(feet=FEET)
 
 
 def walker():
@@ -93,6 +94,18 @@ def test_unknown_frames_take_what_is_known_around_them():
     assert set(contact_phases(walker(), hidden, RATE, EVENTS)[20:80, 0]) == {"flat"}
 
 
+@pytest.mark.parametrize(("height", "first"), [(-0.002, "heel"), (0.002, "toe")])
+def test_marked_changes_of_the_sole_are_believed_before_heights(height, first):
+    marks = (
+        SoleChange(side="right", kind="foot_flat", time=0.3),
+        SoleChange(side="right", kind="heel_off", time=0.6),
+        SoleChange(side="left", kind="heel_off", time=0.25),
+    )
+    phases = contact_phases(walker(), motion(np.full(60, height)), RATE, GaitEvents(feet=FEET, soles=marks))
+    assert sequence(phases[20:80, 0]) == [(first, 10), ("flat", 30), ("toe", 20)]
+    assert sequence(phases[:, 1]) == [("flat", 25), ("toe", 5), ("free", 40), ("flat", 30)]
+
+
 def test_direction_of_turned_feet():
     q = motion(np.zeros(60))
     q[:, 8], q[:, 11] = -0.3, 1.2
@@ -102,4 +115,4 @@ def test_direction_of_turned_feet():
 
 def test_a_foot_without_events_is_refused():
     with pytest.raises(InvalidRecording, match="the left foot has no event"):
-        contact_phases(walker(), motion(np.zeros(60)), RATE, EVENTS[:2])
+        contact_phases(walker(), motion(np.zeros(60)), RATE, GaitEvents(feet=FEET[:2]))
