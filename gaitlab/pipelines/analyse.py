@@ -21,7 +21,7 @@ from ..signal.gaps import Gap, describe_gaps, fill_gaps
 from .calibration import assumed_parameters, calibrate_walk
 from .documents import Session, document_of
 from .kinetics import trial_kinetics
-from .model import motion_warnings, person_model, whole_model_motion
+from .model import motion_warnings, person_model, unsmoothed_motion, whole_model_motion
 from .options import AnalysisOptions
 from .pooling import combine_entries
 from .progress import Progress, Step, silent
@@ -178,6 +178,7 @@ def _request(
         events=events,
         subject=subject,
         q=motion.q,
+        unsmoothed=unsmoothed_motion(subject, walk.recording, walk.kinematics.heading, motion),
         heading=walk.kinematics.heading,
         criteria=options.criteria,
         seed=options.seed,
