@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 from uuid import UUID
 
 from sqlalchemy import select
@@ -12,8 +12,10 @@ from ..jobs.queue import submit
 from ..jobs.request import JobInput, JobRequest
 from ..storage.models import (
     CohortMember,
+    GaitSession,
     Job,
     JobKind,
+    Patient,
     Recording,
     RecordingKind,
     Result,
@@ -22,6 +24,7 @@ from ..storage.models import (
 )
 from . import visibility
 from .caller import Call
+from .choices import NormName
 from .problems import Absent
 from .schemas.work import (
     AnalysisSettings,
@@ -37,7 +40,7 @@ from .schemas.work import (
 
 DOCUMENT = "result.json"
 NORMS = "norms.json"
-NORM_NAMES = frozenset({"schwartz2008", "none"})
+NORM_NAMES: frozenset[str] = frozenset(get_args(NormName))
 
 
 def order(call: Call, wanted: NewJob) -> tuple[Job, bool]:
@@ -164,21 +167,13 @@ def _result_input(call: Call, role: str, result: Result, file: str, name: str, *
 
 def _order_prediction(call: Call, wanted: NewPrediction) -> JobRequest:
     result = _analysed(call, wanted.result_id)
-    job = call.db.get_one(Job, result.job_id)
-    # The prediction builds the same model again, so it reads what the analysis read, and its weights.
-    inputs = _inputs_of(job)
-    inputs += _every_file(call, "result", result, "result/")
-    settings = {
-        "trial": wanted.trial,
-        "weights": dict(wanted.weights),
-        "parameters": dict(wanted.parameters),
-        "analysis": job.settings,
-    }
+    inputs = _every_file(call, "result", result, "result/")
+    settings = {"trial": wanted.trial, "changes": list(wanted.changes)}
     return _request(
         call,
         JobKind.PREDICT,
         inputs,
-        frozenset(visibility.patients_of(call, job.id)),
+        frozenset(visibility.patients_of(call, result.job_id)),
         session_id=result.session_id,
         settings=settings,
         priority=wanted.priority,
@@ -216,20 +211,39 @@ def _every_file(call: Call, role: str, result: Result, folder: str) -> list[JobI
 def _order_report(call: Call, wanted: NewReport) -> JobRequest:
     result = _analysed(call, wanted.result_id)
     inputs = _every_file(call, "result", result, "result/")
-    patients = set(visibility.patients_of(call, result.job_id))
-    for number, each in enumerate(wanted.compare_with):
-        before = _analysed(call, each)
-        inputs += _every_file(call, "before", before, f"before-{number + 1}/")
-        patients |= set(visibility.patients_of(call, before.job_id))
+    patients = visibility.patients_of(call, result.job_id)
+    content = wanted.content
+    settings = {
+        "pages": list(content.pages),
+        "colours": content.colours,
+        "examination": _examination(call, result, content.notes),
+    }
     return _request(
         call,
         JobKind.REPORT,
         inputs,
         frozenset(patients),
         session_id=result.session_id,
-        settings=wanted.content.model_dump(mode="json"),
+        settings=settings,
         priority=wanted.priority,
     )
+
+
+def _examination(call: Call, result: Result, notes: Sequence[str]) -> dict[str, Any]:
+    """What the report says of patient and visit: the pseudonym, never the name."""
+    if result.session_id is None:
+        return {}
+    visit = call.db.get_one(GaitSession, result.session_id)
+    patient = call.db.get_one(Patient, visit.patient_id)
+    known: dict[str, Any] = dict(visit.examination)
+    person = {"pseudonym": patient.pseudonym, "diagnosis": patient.diagnosis}
+    return {
+        **known,
+        "patient": {**person, **known.get("patient", {})},
+        "session": {"date": visit.visited_on.isoformat(), **known.get("session", {})},
+        "condition": {"note": visit.condition, **known.get("condition", {})},
+        "notes": [*known.get("notes", []), *notes],
+    }
 
 
 def members(

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import tempfile
+import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,6 @@ from ..clinical.comparison import Member, compare
 from ..clinical.document import Document
 from ..errors import InvalidRequest, OutputError
 from ..pipelines.compare import write_tables
-from ..report.export_c3d import export_c3d
 from ..storage.models import Job, Recording, ReportVersion, Result, ResultFile
 from .caller import Call
 from .files import copy_out
@@ -23,8 +23,10 @@ from .problems import Absent
 from .services import Services
 
 DOCUMENT = "result.json"
-SCENE_SECONDS = 120.0
-EXPORT_PROCESS = "gaitlab.viewer.export"
+SHOWN = ("walk.npz", DOCUMENT)
+"""Files of a result that the 3D view reads, in each of its folders."""
+EXPORT_SECONDS = 120.0
+SCENE_PROCESS, FORMAT_PROCESS = "gaitlab.viewer.export", "gaitlab.report.export_process"
 
 
 def files_of(call: Call, result_id: UUID) -> list[ResultFile]:
@@ -130,28 +132,46 @@ def table_file(services: Services, source: Source, table: str, parquet: bool, fo
     return folder / f"{table}{'.parquet' if parquet else '.csv'}"
 
 
-def c3d_file(services: Services, source: Source, folder: Path) -> Path:
-    """The trial's recording with angles, moments and powers of the result; the C3D is read in a process of its own."""
-    if source.recording is None:
-        raise InvalidRequest("name the trial to export: ?trial=...")
-    name, sha256 = source.recording
+def format_file(services: Services, source: Source, kind: str, folder: Path) -> Path:
+    """The result in the format of another program; several files become a zip. Made in a process of its own."""
     copy_files(services, [file for file in source.files if not file.name.endswith(".html")], folder / "result")
-    recording = copy_out(services, sha256, folder / "recording", Path(name).name)
-    directory = folder / "result" / source.trial if source.trial else folder / "result"
-    target = folder / f"{Path(name).stem}-gaitlab.c3d"
-    export_c3d(directory, recording, target)
+    recordings: list[str] = []
+    if kind == "c3d":
+        if source.recording is None:
+            raise InvalidRequest("name the trial to export: ?trial=...")
+        name, sha256 = source.recording
+        recordings.append(str(copy_out(services, sha256, folder / "recording", Path(name).name)))
+    out = folder / "out"
+    _run(FORMAT_PROCESS, str(_directory(source, folder)), str(out), kind, *recordings)
+    made = sorted(path for path in out.rglob("*") if path.is_file())
+    if len(made) == 1:
+        return made[0]
+    target = folder / f"{kind}.zip"
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
+        for path in made:
+            archive.write(path, path.relative_to(out))
     return target
 
 
 def scene_file(services: Services, source: Source, folder: Path) -> Path:
     """A trial in 3D as one page, made in a process of its own."""
-    wanted = [file for file in source.files if file.name.endswith(("walk.npz", DOCUMENT))]
-    copy_files(services, wanted, folder / "result")
+    copy_files(services, [file for file in source.files if Path(file.name).name in SHOWN], folder / "result")
     target = folder / "scene.html"
-    command = [sys.executable, "-P", "-m", EXPORT_PROCESS, str(folder / "result"), str(target)]
-    command += [source.trial] if source.trial else []
-    finished = subprocess.run(command, capture_output=True, text=True, timeout=SCENE_SECONDS, check=False)
+    _run(SCENE_PROCESS, str(folder / "result"), str(target), *([source.trial] if source.trial else []))
+    return target
+
+
+def _directory(source: Source, folder: Path) -> Path:
+    return folder / "result" / source.trial if source.trial else folder / "result"
+
+
+def _run(module: str, *arguments: str) -> None:
+    """Run a module of ours; raises OutputError with its sentence when it fails."""
+    command = [sys.executable, "-P", "-m", module, *arguments]
+    try:
+        finished = subprocess.run(command, capture_output=True, text=True, timeout=EXPORT_SECONDS, check=False)
+    except subprocess.TimeoutExpired as error:
+        raise OutputError(f"the export took longer than {EXPORT_SECONDS:g} s and was stopped") from error
     if finished.returncode != 0:
         lines = finished.stderr.strip().splitlines()
-        raise OutputError(lines[-1] if finished.returncode == 1 and lines else "the 3D export ended without a result")
-    return target
+        raise OutputError(lines[-1] if finished.returncode == 1 and lines else "the export ended without a result")

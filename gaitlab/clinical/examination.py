@@ -4,8 +4,9 @@ There is no field for a name or a birth date: the report goes by a pseudonym.
 """
 
 import datetime
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 
@@ -106,6 +107,25 @@ def read_examination(path: Path) -> Examination:
         ) from error
     _check(found, path.name)
     return found
+
+
+def check_examination(value: Mapping[str, Any]) -> dict[str, Any]:
+    """An examination that was typed into a form, as plain JSON.
+
+    Raises:
+        InvalidSubject: It has an unknown field or a grade that the scale does not have.
+    """
+    try:
+        found = msgspec.convert(dict(value), Examination)
+    except msgspec.ValidationError as error:
+        raise InvalidSubject(f"examination: {error}; no name or birth date of a person belongs here") from error
+    _check(found, "of the form")
+    return msgspec.to_builtins(found)
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of an examination."""
+    return msgspec.json.schema(Examination)
 
 
 def encode_examination(examination: Examination) -> bytes:

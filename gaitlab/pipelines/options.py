@@ -2,26 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import pi
 from typing import Literal
 
-from ..clinical.document import SIDES
 from ..errors import InvalidSubject, NotFound, ProblemError
 from ..inverse.leg_kinetics import InertiaConvention, MomentFrame
-from ..mocap.subject_parameters import LENGTHS, SIDED_ANGLES, SIDED_LENGTHS
 from ..multibody.anthropometry import AnthropometryName
 from ..walking.contact_schedule import Landing
 from ..walking.criteria import THESIS, by_name
+from .body_parameters import PLAUSIBLE
 from .references import ReferenceOptions
-
-MASS_RANGE = (1.0, 500.0)  # [kg]
-PLAUSIBLE = (
-    {"mass": (*MASS_RANGE, "kg")}
-    | {name: (low, high, "m") for name, low, high in LENGTHS.values()}
-    | {f"{side}_{name}": (low, high, "m") for side in SIDES for name, low, high in SIDED_LENGTHS.values()}
-    | {f"{side}_{name}": (-pi, pi, "rad") for side in SIDES for name in SIDED_ANGLES.values()}
-)
-"""Body parameters that may be given: lowest and highest plausible value, unit."""
 
 StaticOffsets = Literal["computed", "file"]
 

@@ -28,9 +28,9 @@ from ..pseudonyms import mask, masked_names
 from ..results import (
     DOCUMENT,
     Source,
-    c3d_file,
     file_of,
     files_of,
+    format_file,
     in_trial,
     keep_until_sent,
     scene_file,
@@ -46,7 +46,7 @@ NameReader = Annotated[Call, allowed(Permission.IDENTITIES_READ)]
 Exporter = Annotated[Asker, allowed_slowly(Permission.RESULTS_READ)]
 Remover = Annotated[Asker, allowed_slowly(Permission.RESULTS_DELETE)]
 Trial = Annotated[Line, Query(description="Name of one walk; empty: all together.")]
-Format = Literal["json", "csv", "parquet", "npz", "html", "pdf", "c3d", "scene"]
+Format = Literal["json", "csv", "parquet", "npz", "html", "pdf", "c3d", "trc", "mot", "fhir", "scene"]
 MEDIA: dict[Format, str] = {
     "json": "application/json",
     "csv": "text/csv",
@@ -55,10 +55,14 @@ MEDIA: dict[Format, str] = {
     "html": "text/html",
     "pdf": "application/pdf",
     "c3d": "application/octet-stream",
+    "trc": "text/plain",
+    "mot": "text/plain",
+    "fhir": "application/fhir+json",
     "scene": "text/html",
 }
-WITH_NAMES = frozenset({"html", "pdf", "c3d"})
+WITH_NAMES = frozenset({"html", "pdf", "c3d", "trc", "mot", "fhir"})
 """Formats that may hold names."""
+EXPORTS = content(*sorted({*MEDIA.values(), "application/zip"}))
 POLICIES = {"html": DOCUMENT_POLICY, "scene": SCENE_POLICY}
 
 
@@ -148,12 +152,16 @@ def download_result_file(call: NameReader, result_id: UUID, name: str) -> Respon
     return stream(call, file.sha256, file.media_type, Path(name).name, content_security_policy=DOCUMENT_POLICY)
 
 
-@router.get("/{result_id}/exports/{kind}", response_class=Response, responses=content(*sorted(set(MEDIA.values()))))
+@router.get(
+    "/{result_id}/exports/{kind}",
+    response_class=Response,
+    responses=content(*sorted({*MEDIA.values(), "application/zip"})),
+)
 def export_result(asker: Exporter, result_id: UUID, kind: Format, choice: Annotated[ExportChoice, Query()]) -> Response:
     """The result in another format.
 
     json: the document; csv, parquet: a table; npz: the walk in time; html, pdf: the report; c3d: the recording with
-    angles, moments and powers; scene: the walk in 3D as one page.
+    angles, moments and powers; trc, mot: OpenSim; fhir: observations; scene: the walk in 3D as one page.
     """
     with asker.begin() as call:
         if kind in WITH_NAMES and not asker.caller.sees_names:
@@ -180,17 +188,18 @@ def _stored(call: Call, source: Source, kind: Format, name: str | None) -> Respo
 
 def _made(asker: Asker, source: Source, kind: Format, choice: ExportChoice) -> Response:
     def make(folder: Path) -> Path:
-        if kind == "c3d":
-            return c3d_file(asker.services, source, folder)
         if kind == "scene":
             return scene_file(asker.services, source, folder)
-        return table_file(asker.services, source, choice.table, kind == "parquet", folder)
+        if kind in ("csv", "parquet"):
+            return table_file(asker.services, source, choice.table, kind == "parquet", folder)
+        return format_file(asker.services, source, kind, folder)
 
     path, remove = keep_until_sent(asker.services, make)
     headers = {"content-disposition": disposition(path.name)}
     if kind in POLICIES:
         headers["content-security-policy"] = POLICIES[kind]
-    return FileResponse(path, media_type=MEDIA[kind], headers=headers, background=BackgroundTask(remove))
+    media_type = "application/zip" if path.suffix == ".zip" else MEDIA[kind]
+    return FileResponse(path, media_type=media_type, headers=headers, background=BackgroundTask(remove))
 
 
 @router.delete("/{result_id}", status_code=HTTPStatus.NO_CONTENT)

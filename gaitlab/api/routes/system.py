@@ -1,6 +1,6 @@
 """What this installation can do, and what it is doing."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, Request
 from sqlalchemy import func, select, text
@@ -9,10 +9,11 @@ from sqlalchemy.orm import Session
 from ... import __version__
 from ...clinical.document import CURVES
 from ...clinical.document import schema as document_schema
-from ...pipelines.options import PLAUSIBLE
+from ...clinical.examination import schema as examination_schema
+from ...pipelines.body_parameters import PLAUSIBLE
 from ...storage.models import Job, JobStatus, Row, StoredFile
-from ...walking.criteria import ALL, THESIS
 from ..caller import Call
+from ..choices import DEFAULT_CRITERIA, CriterionName
 from ..dependencies import allowed, services_of
 from ..files import CHUNK_LIMIT
 from ..orders import NORM_NAMES
@@ -36,8 +37,8 @@ def get_about(request: Request, call: SignedIn) -> About:
     settings = services_of(request).settings
     return About(
         version=__version__,
-        criteria=sorted(ALL),
-        default_criteria=THESIS,
+        criteria=sorted(get_args(CriterionName)),
+        default_criteria=DEFAULT_CRITERIA,
         curves=CURVES,
         body_parameters=PLAUSIBLE,
         norms=sorted(NORM_NAMES),
@@ -51,6 +52,12 @@ def get_about(request: Request, call: SignedIn) -> About:
 def get_result_schema() -> dict[str, Any]:
     """JSON schema of a result's document."""
     return document_schema()
+
+
+@router.get("/schemas/examination")
+def get_examination_schema() -> dict[str, Any]:
+    """JSON schema of a visit's clinical examination."""
+    return examination_schema()
 
 
 @router.get("/system")

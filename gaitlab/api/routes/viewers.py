@@ -16,14 +16,12 @@ from ..files import content
 from ..origin import is_same_origin
 from ..permissions import Permission
 from ..problems import Absent
-from ..results import copy_files, files_of
+from ..results import SHOWN, copy_files, files_of
 from ..schemas.work import Viewer
 from ..viewer_proxy import connect, control, fetch
 from ..viewers import Owner
 from ..viewers import Viewer as Running
 
-SHOWN = ("walk.npz", "result.json")
-"""Files of a result that the 3D view reads, in each of its folders."""
 REFUSED = 4003
 router = APIRouter(tags=["3D sessions"])
 Looker = Annotated[Asker, allowed_slowly(Permission.RESULTS_READ)]

@@ -7,12 +7,13 @@ from uuid import UUID
 
 from pydantic import AfterValidator, ConfigDict, Field
 
-from ...pipelines.options import PLAUSIBLE
+from ...clinical.examination import check_examination
+from ...errors import InvalidSubject
+from ...pipelines.body_parameters import PLAUSIBLE
 from ...storage.models import Access, RecordingKind, TreatmentStage, UploadState
 from .forms import Edited, FileName, Input, Line, Output, Paging, Prose, Sha256, Stored, Word
 
 Sex = Literal["", "female", "male", "other"]
-LONGEST_EXAMINATION = 400
 _DAY = date(2026, 11, 20)
 
 
@@ -93,19 +94,27 @@ class Share(Output):
     created_at: datetime
 
 
-def _small(value: Mapping[str, Any]) -> Mapping[str, Any]:
-    if len(value) > LONGEST_EXAMINATION:
-        raise ValueError(f"the examination has {len(value)} entries; at most {LONGEST_EXAMINATION} are kept")
-    return value
+def _checked(value: Mapping[str, Any]) -> Mapping[str, Any]:
+    try:
+        return check_examination(value)
+    except InvalidSubject as error:
+        raise ValueError(str(error)) from error
 
 
-Finding = float | bool | Line | None
 Examination = Annotated[
-    Mapping[Word, Finding],
-    AfterValidator(_small),
-    Field(examples=[{"hip_extension_left_deg": -5, "rectus_femoris_tone_left_ashworth": "1+"}]),
+    Mapping[str, Any],
+    AfterValidator(_checked),
+    Field(
+        description="Clinical examination; GET /api/v1/schemas/examination describes it.",
+        examples=[
+            {
+                "condition": {"footwear": "barefoot"},
+                "ranges": [{"joint": "hip", "motion": "extension", "left": -5, "right": 0}],
+                "spasticity": [{"muscle": "rectus femoris", "left": "1+", "right": "1"}],
+            }
+        ],
+    ),
 ]
-"""Findings by name: ranges of motion, strength, spasticity."""
 
 
 class NewSession(Input):

@@ -5,13 +5,19 @@ from datetime import datetime
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from pydantic import Field
+from pydantic import Field, StringConstraints
 
-from ...inverse.leg_kinetics import InertiaConvention, MomentFrame
-from ...pipelines.options import StaticOffsets
 from ...storage.models import JobKind, JobStatus
-from ...walking.contact_schedule import Landing
-from ...walking.criteria import THESIS
+from ..choices import (
+    DEFAULT_CRITERIA,
+    CriterionName,
+    InertiaConvention,
+    Landing,
+    MomentFrame,
+    Palette,
+    ReportPage,
+    StaticOffsets,
+)
 from .forms import Edited, Input, Line, Output, Paging, Prose, Stored, Word
 from .patients import BodyParameters
 
@@ -20,7 +26,7 @@ class AnalysisSettings(Input):
     """Choices of an analysis, as the options of `gaitlab analyse`."""
 
     parameters: BodyParameters = Field(default_factory=dict)
-    criteria: Sequence[Word] = Field(default=THESIS, max_length=50)
+    criteria: Sequence[CriterionName] = Field(default=DEFAULT_CRITERIA, min_length=1, max_length=6)
     weights: bool = Field(
         default=True, description="Compute the walk and its weights; without, only the clinical part."
     )
@@ -61,25 +67,29 @@ class NewAnalysis(_NewJob):
     settings: AnalysisSettings = Field(default_factory=AnalysisSettings)
 
 
+Change = Annotated[str, StringConstraints(max_length=80, pattern=r"^[a-z_]+=[+-]?[0-9.eE+-]+%?$")]
+
+
 class NewPrediction(_NewJob):
-    """The optimal walk with other weights or another body."""
+    """The optimal walk of a changed body, or at another speed."""
 
     kind: Literal["predict"]
     result_id: UUID = Field(description="The analysis to start from.")
     trial: Line = Field(default="", description="Name of one walk; empty: the first.")
-    weights: Mapping[Word, Annotated[float, Field(ge=0, le=1)]] = Field(
-        default_factory=dict, description="By criterion; the others share what is left in their proportions."
+    changes: Sequence[Change] = Field(
+        default=(),
+        max_length=100,
+        description="As `gaitlab predict --set`: name=value, or name=+10%; none: the identified gait itself.",
+        examples=[["speed=+10%", "left_ankle_orthosis=1"]],
     )
-    parameters: BodyParameters = Field(default_factory=dict)
 
 
 class ReportContent(Input):
     """What stands in a report, and in which form."""
 
-    language: Literal["en", "de"] = "en"
-    pages: Sequence[Word] = Field(default=(), max_length=50, description="Sections in order; empty: all.")
-    assessment: Prose = Field(default="", description="What the clinician concludes.")
-    with_identity: bool = Field(default=True, description="Print name and birth date, as far as they are known.")
+    pages: Sequence[ReportPage] = Field(default=(), max_length=20, description="Empty: all.")
+    colours: Palette = "standard"
+    notes: Sequence[Line] = Field(default=(), max_length=50, description="Printed with the examination.")
 
 
 class NewReport(_NewJob):
@@ -87,7 +97,6 @@ class NewReport(_NewJob):
 
     kind: Literal["report"]
     result_id: UUID
-    compare_with: Sequence[UUID] = Field(default=(), max_length=10, description="Results of earlier visits.")
     content: ReportContent = Field(default_factory=ReportContent)
 
 
