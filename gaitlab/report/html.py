@@ -54,7 +54,7 @@ def _of_trial(trial: str, pages: Sequence[str], trials: Sequence[str]) -> str:
 
 def _page(page: Page, edition: Edition) -> str:
     footer = _tag("footer", escape(f"{edition.words}. {INTENDED_USE}"))
-    kind = "paper picture" if page.is_large else "paper"
+    kind = "paper large" if page.is_large else "paper"
     return _tag("section", "".join(map(_section, page.sections)) + footer, kind, "" if page.trial else page.key)
 
 

@@ -15,6 +15,7 @@ from .front_sections import examination_sections, front_sections
 from .kinetics_sections import emg_sections, kinetics_sections
 from .provenance_sections import provenance_sections
 from .quality_sections import quality_sections
+from .result import mapping, sequence
 from .score_sections import scores_sections, strides_section
 from .source import Source, Trial
 from .stills_section import stills_section
@@ -66,7 +67,7 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
         "spatiotemporal": lambda: (spatiotemporal_section(overall),),
         "scores": lambda: scores_sections(overall),
         "weights": lambda: weights_sections(overall),
-        **({} if source.several else _walk_pages(source.trials[0])),
+        **_common_walk_pages(source),
         "quality": lambda: (*quality_sections(overall), events_section(overall), body_section(overall)),
         "provenance": lambda: provenance_sections(source, program),
     }
@@ -77,6 +78,27 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
 def _every_cycle(source: Source) -> Section:
     why = " ".join(trial.problems.get("angles", "") for trial in source.trials).strip()
     return consistency_section(source.overall, [(trial.result, trial.angles) for trial in source.trials], why)
+
+
+def _common_walk_pages(source: Source) -> dict[str, Callable[[], tuple[Section, ...]]]:
+    """Of one trial everything on its walk; of several the stills of the representative one, if none is solved."""
+    if not source.several:
+        return _walk_pages(source.trials[0])
+    if _solved(source):
+        return {}
+    trial = _representative(source)
+    return {"stills": lambda: (stills_section(trial.result, trial.walk, trial.problems.get("walk", "")),)}
+
+
+def _solved(source: Source) -> list[Trial]:
+    return [t for t in source.trials if t.walk is not None and t.walk.numbers("q_optimal", 2) is not None]
+
+
+def _representative(source: Source) -> Trial:
+    """The trial of the stride closest to the median stride; the first where none is marked."""
+    strides = [mapping(item) for item in sequence(source.overall.part("strides").get("strides"))]
+    named = [stride.get("trial") for stride in strides if stride.get("representative") is True]
+    return next((trial for name in named for trial in source.trials if trial.result.name == name), source.trials[0])
 
 
 def _walk_pages(trial: Trial) -> dict[str, Callable[[], tuple[Section, ...]]]:
@@ -96,18 +118,14 @@ def _weights_page(trial: Trial) -> tuple[Section, ...]:
 
 
 def _trial_pages(source: Source, keys: Sequence[str]) -> list[Page]:
-    """Weights, walk and stills of each of several trials; without an optimal walk only the stills of the first."""
+    """Weights, walk and stills of each of several trials that have an optimal walk."""
     if not source.several:
         return []
     pages = list[Page]()
-    solved = [t for t in source.trials if t.walk is not None and t.walk.numbers("q_optimal", 2) is not None]
+    solved = _solved(source)
     for trial in solved[:MOST_TRIALS]:
         found = _walk_pages(trial)
         pages += [Page(key=key, sections=found[key](), trial=trial.result.name) for key in found if key in keys]
-    if not solved and "stills" in keys:
-        first = source.trials[0]
-        stills = stills_section(first.result, first.walk, first.problems.get("walk", ""))
-        pages.append(Page(key="stills", sections=(stills,), trial=first.result.name))
     rest = ", ".join(trial.result.name for trial in solved[MOST_TRIALS:])
     if rest:
         why = (

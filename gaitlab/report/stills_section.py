@@ -25,9 +25,10 @@ def stills_section(result: Result, walk: Walk | None, why: str) -> Section:
     if drawn is None:
         return section(title, missing("stills", "walk.npz holds no skeleton (segment_positions_measured and bones)"))
     words = (
-        "Skeleton of the whole-model kinematics (origins of the segments and tips of the feet), moved so that the "
-        "measured pelvis stays in place; scale equal in all views. The model-optimal skeleton, where there is one, is "
-        "moved by the same amount: where its pelvis lies elsewhere, the model is ahead of or behind the person."
+        f"Trial {result.name}. Skeleton of the whole-model kinematics (origins of the segments and tips of the feet), "
+        "moved so that the measured pelvis stays in place; scale equal in all views. The model-optimal skeleton, where "
+        "there is one, is moved by the same amount: where its pelvis lies elsewhere, the model is ahead of or behind "
+        "the person."
     )
     optimal = walk.vectors("segment_positions_optimal")
     gap = missing("the model-optimal skeleton", "weights and their walk were not computed") if optimal is None else None
