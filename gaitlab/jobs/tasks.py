@@ -26,7 +26,7 @@ from . import metrics
 from .claims import Claim, beat, claim, end, requeue
 from .computing_process import OUTCOME
 from .request import QUEUES, SOLVE, Work
-from .supervision import Ended, Limits, Verdict, Watch, run_process
+from .supervision import PROCESS, Ended, Limits, Verdict, Watch, run_process
 
 Value = TypeVar("Value")
 RETRY_SECONDS = 1.0
@@ -50,6 +50,8 @@ class Runner:
     """Its name in the jobs' rows."""
     workspace: Path
     """Folder of the jobs' folders; see `workspace`."""
+    module: str = PROCESS
+    """What the computing process runs."""
     stopping: bool = False
     """Once true, running processes are ended and their jobs wait again."""
     running: set[UUID] = field(default_factory=set[UUID])
@@ -111,7 +113,7 @@ class Runner:
         niceness = self.settings.job_niceness if QUEUES[JobKind(work.kind)] == SOLVE else 0
         settings = self.settings
         limits = Limits(seconds=settings.job_seconds, memory=settings.job_memory, niceness=niceness)
-        return await run_process(work, limits, Watch(progress=latest.append, ask=ask))
+        return await run_process(work, limits, Watch(progress=latest.append, ask=ask), self.module)
 
     async def _conclude(self, claimed: Claim, job: Job, work: Work, ended: Ended) -> None:
         log.info("process ended", verdict=ended.verdict.value, code=ended.code, seconds=round(ended.seconds, 3))

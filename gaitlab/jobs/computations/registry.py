@@ -11,6 +11,8 @@ from .outcome import Computation, Outcome
 MODULES: Mapping[str, str] = {
     "inspect": "inspection",
     "analyse": "analysis",
+    "predict": "prediction",
+    "report": "report",
     "compare": "comparison",
     "norms": "norms",
 }

@@ -1,0 +1,55 @@
+"""A computing process whose computation is what its settings say: it stands in for hours of work and for crashes."""
+
+import importlib
+import os
+import signal
+import subprocess
+import sys
+import time
+import types
+
+from gaitlab.errors import InvalidRecording
+from gaitlab.jobs import computing_process
+from gaitlab.pipelines.progress import Step
+
+outcome = importlib.import_module("gaitlab.jobs.computations.outcome")
+
+
+def succeed(work, progress):
+    progress(Step(stage="computing", done=0.5))
+    (work.out / "trial").mkdir()
+    text = "".join(path.read_text() for path in work.paths("walk"))
+    (work.out / "trial" / "result.json").write_text(text or "{}")
+    return outcome.Outcome(summary={"answer": 42})
+
+
+def hang(work, progress):
+    progress(Step(stage="hanging"))
+    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    time.sleep(work.settings.get("seconds", 600))
+    return succeed(work, progress)
+
+
+def crash(work, progress):
+    sys.stderr.write("free(): invalid pointer\n")
+    sys.stderr.flush()
+    os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def refuse(work, progress):
+    raise InvalidRecording(f"{work.folder / 'inputs' / 'walk.c3d'}: no markers")
+
+
+def grow(work, progress):
+    return bytearray(work.settings["bytes"])
+
+
+def compute(work, progress):
+    return globals()[work.settings.get("do", "succeed")](work, progress)
+
+
+if __name__ == "__main__":
+    registry = types.ModuleType("registry")
+    registry.compute = compute
+    sys.modules["gaitlab.jobs.computations.registry"] = registry
+    computing_process.main()
