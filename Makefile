@@ -10,7 +10,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow check format evidence wheel clean
+.PHONY: help demo test test-slow test-postgres check format evidence wheel clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -23,6 +23,9 @@ test: $(VENV)/.installed-dev ## all tests but the slow ones
 
 test-slow: $(VENV)/.installed-dev ## samples of what is heavy
 	$(BIN)/python -m pytest -m slow
+
+test-postgres: $(VENV)/.installed-dev ## tests of storage, jobs and API on the server at GAITLAB_TEST_DATABASE_URL
+	$(BIN)/python -m pytest -m "not slow" tests/storage tests/jobs tests/api
 
 check: $(VENV)/.installed-dev ## linters, types, layers, house style
 	$(BIN)/ruff check
