@@ -147,7 +147,7 @@ def track(
     """Solve the tracking problem; whether it converged is in the solution's status."""
     settings = settings or TrackingSettings()
     problem = tracking_problem(stride, settings)
-    solution = settings.solver.solve(problem, _first_guess(problem), progress)
+    solution = settings.solver.solve(problem, first_guess(problem), progress)
     return TrackedWalk(stride=stride, problem=problem, solution=solution)
 
 
@@ -184,8 +184,8 @@ def _in_order(subject: SubjectModel) -> SubjectModel:
     return replace(subject, contacts=_contact_points(subject))
 
 
-def _first_guess(problem: MechanicalProblem) -> np.ndarray:
-    """Measured states, and body weight spread over the points in contact."""
+def first_guess(problem: MechanicalProblem) -> np.ndarray:
+    """Start of the tracking: measured states, and body weight spread over the points in contact; shape (n_w,)."""
     shared = problem.shared
     w = np.zeros(shared.n_w)
     w[: problem.data.reference.size] = problem.data.reference.ravel()

@@ -7,7 +7,7 @@ import gaitlab as package
 from gaitlab.cli.app import app
 
 README = Path(__file__).parents[2] / "README.md"
-COMMANDS = ("analyse", "compare", "inspect", "view", "schema", "demo", "demo-data")
+COMMANDS = ("analyse", "compare", "inspect", "view", "schema", "demo", "demo-data", "predict")
 
 
 def test_version(gaitlab):
