@@ -4,14 +4,16 @@ from html.parser import HTMLParser
 
 from gaitlab.report.build import ReportOptions, build_report
 from gaitlab.report.edition import DRAFT
+from gaitlab.report.pages import KEYS
 from gaitlab.report.source import read_source
 
 VOID = {"meta", "br", "hr", "img", "link", "input"}
 
 
-def render(directory):
-    """The report of a result folder as HTML."""
-    return build_report(read_source(directory), ReportOptions(formats=("html",)), DRAFT, {})["html"].decode()
+def render(directory, *pages):
+    """The report of a result folder as HTML; all pages unless some are named."""
+    options = ReportOptions(formats=("html",), pages=pages or KEYS)
+    return build_report(read_source(directory), options, DRAFT, {})["html"].decode()
 
 
 class Page(HTMLParser):
