@@ -65,9 +65,7 @@ def _mark(axes: Axes, name: str, percent: float, row: int) -> str:
     side = next((side for side in SIDE if name.startswith(side)), "")
     x, top = axes.x(percent), axes.top - 14.0 * row
     line = straight((x, top), (x, axes.bottom), stroke="#222", stroke_width=1.2, stroke_dasharray="5 3")
-    return line + text(
-        name, x, axes.top - 6.0, fill=SIDE.get(side, "#222"), **{"class": "tick", "text_anchor": "middle"}
-    )
+    return line + text(name, x, top - 5.0, fill=SIDE.get(side, "#222"), **{"class": "tick", "text_anchor": "middle"})
 
 
 def _key(names: Sequence[str], top: float) -> str:

@@ -21,3 +21,11 @@ def test_wide_bands_carry_the_number_of_their_criterion():
 def test_events_stand_at_their_percentage():
     drawn = share_figure(PERCENT, np.ones((5, 1)), ("a",), {"left foot off": 50.0})
     assert "left foot off" in drawn and 'x1="520"' in drawn
+
+
+def test_neighbouring_events_stand_in_different_rows():
+    drawn = share_figure(PERCENT, np.ones((5, 1)), ("a",), {"right foot strike": 50.0, "left foot off": 58.0})
+    heights = [
+        drawn.split(f">{name}<")[0].rsplit('y="', 1)[1].split('"')[0] for name in ("right foot strike", "left foot off")
+    ]
+    assert heights[0] != heights[1]
