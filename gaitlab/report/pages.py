@@ -13,6 +13,7 @@ from .clinical_sections import (
 )
 from .front_sections import examination_sections, front_sections
 from .kinetics_sections import emg_sections, kinetics_sections
+from .prediction_sections import prediction_sections
 from .provenance_sections import provenance_sections
 from .quality_sections import quality_sections
 from .result import mapping, sequence
@@ -106,7 +107,7 @@ def _walk_pages(trial: Trial) -> dict[str, Callable[[], tuple[Section, ...]]]:
     result, why = trial.result, trial.problems.get("walk", "")
     return {
         "weights": lambda: _weights_page(trial),
-        "walk": lambda: walk_sections(result, trial.walk, why),
+        "walk": lambda: (*prediction_sections(result), *walk_sections(result, trial.walk, why)),
         "stills": lambda: (stills_section(result, trial.walk, why),),
     }
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import OutputError
 from ..report.colours import side_of
-from ..report.result import read_result
+from ..report.result import SOLVED, mapping, read_result
 from ..report.walk_file import Walk, read_walk
 
 MARKERS, MEASURED, OPTIMAL = "markers", "measured", "model-optimal"
@@ -52,7 +52,9 @@ class Motion:
     phase: tuple[str, ...]
     """Name of the phase per frame; empty if unknown."""
     converged: bool
-    """False if the document says that the weights carry no certificate."""
+    """False if the document says that the weights, or the prediction, carry no certificate."""
+    caption: str = ""
+    """What the motion shows besides a measured walk, a sentence; empty for one that was analysed."""
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -104,6 +106,7 @@ def read_motion(directory: Path) -> Motion:
             f"{directory / 'walk.npz'} holds neither markers nor segment positions, so there is nothing to show; "
             "run 'gaitlab analyse' again"
         )
+    converged, caption = _said(directory)
     phase, bones = walk.get("phase"), _bones(walk, measured if measured is not None else optimal)
     names = walk.names("segment_names")
     return Motion(
@@ -117,15 +120,24 @@ def read_motion(directory: Path) -> Motion:
         plates=_forces(walk.vectors("grf_plates"), walk.vectors("cop_plates")),
         contacts=_contacts(walk, optimal),
         phase=() if phase is None or phase.ndim != 1 else tuple(str(name) for name in phase),
-        converged=_converged(directory),
+        converged=converged,
+        caption=caption,
     )
 
 
-def _converged(directory: Path) -> bool:
+def _said(directory: Path) -> tuple[bool, str]:
+    """Whether the document certifies the model's walk, and what it was predicted for."""
     if not (directory / "result.json").is_file():
-        return True
-    weights = read_result(directory).weights
-    return weights is None or weights.converged
+        return True, ""
+    result = read_result(directory)
+    converged = result.weights is None or result.weights.converged
+    prediction = result.part("prediction")
+    if not prediction:
+        return converged, ""
+    asked, units = mapping(prediction.get("reached")), mapping(prediction.get("units"))
+    changes = [f"{name} {value:.4g} {units.get(name, '')}" for name, value in asked.items() if isinstance(value, float)]
+    caption = f"Predicted: {', '.join(changes) or 'nothing changed'}; beside it the measured walk at the same phase."
+    return converged and prediction.get("status") == SOLVED, caption
 
 
 def _bones(walk: Walk, joints: np.ndarray | None) -> np.ndarray:

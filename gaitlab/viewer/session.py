@@ -262,6 +262,7 @@ class Session:
         moment = float(self._motion.time[self.frame])
         self._slider.value = moment
         lines = [f"**{self.phase or 'phase unknown'}** · {moment:.2f} s"]
+        lines += [self._motion.caption] if self._motion.caption else []
         self._status.content = "\n\n".join(lines if self._motion.converged else [_NOT_CONVERGED, *lines])
 
 
