@@ -14,7 +14,6 @@ from ..errors import InvalidRecording, OutputError
 from ..mocap.recording import EventKind, EventSource, Side
 from .kinetics_document import EmgEntry, KineticsEntry
 from .prediction_document import PredictionEntry
-from .prediction_document import PredictionEntry
 from .score_document import ScoresEntry, StridesEntry
 from .spatiotemporal import NormalisedSpatiotemporal, Spatiotemporal
 
@@ -255,8 +254,6 @@ class Document(msgspec.Struct, frozen=True, kw_only=True):
     """All strides of all trials: outliers, representative stride, consistency."""
     scores: ScoresEntry | None = None
     """Gait variable and profile scores, gait deviation index, and the norms that they refer to."""
-    prediction: PredictionEntry | None = None
-    """Only in results of `gaitlab predict`: what was changed, the way there, and what it changes."""
     prediction: PredictionEntry | None = None
     """Only in results of `gaitlab predict`: what was changed, the way there, and what it changes."""
     environment: dict[str, str] = {}
