@@ -41,6 +41,9 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     file_offsets: Annotated[
         bool, typer.Option(help="Use the static offsets stored in the file, not those computed.")
     ] = False,
+    along_walk: Annotated[
+        bool, typer.Option(help="Forward is the walking direction itself, not the laboratory axis next to it.")
+    ] = False,
     moments_in: Annotated[MomentFrame, typer.Option(help="Axes that joint moments are expressed in.")] = "distal",
     vicon_inertia: Annotated[
         bool, typer.Option(help="Segment inertia as in Plug-in Gait, to compare moments.")
@@ -62,6 +65,7 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
         trunk_joint=trunk_joint,
         redetect_events=redetect_events,
         static_offsets="file" if file_offsets else "computed",
+        forward="heading" if along_walk else "laboratory axis",
         moment_frame=moments_in,
         kinetics_inertia="plug-in gait" if vicon_inertia else "subject",
         references=ReferenceOptions(

@@ -11,9 +11,11 @@ import numpy as np
 from ..errors import NotFound, ProblemError
 from .document import CURVES, SIDES, Curve, Document, SideSpatiotemporal
 from .gait_profile import GPS_MINIMAL_DIFFERENCE
+from .kinetics_document import UNITS, CycleAverage
 from .spatiotemporal import Spatiotemporal
 
 Cell = str | float | int | bool | None
+CycleCurve = Curve | CycleAverage
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,9 +67,10 @@ class Band:
     """Point-by-point mean and standard deviation between the results of a group."""
 
     mean: np.ndarray
-    """Mean [deg], shape (101,)."""
+    """Mean in the curve's unit, shape (101,)."""
     sd: np.ndarray | None
-    """Sample standard deviation [deg], shape (101,); None with one result, then of its cycles where it has them."""
+    """Sample standard deviation in the curve's unit, shape (101,); None with one result, then of its cycles where it
+    has them."""
     n: int
 
 
@@ -202,10 +205,10 @@ def _curve_table(comparison: Comparison) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for member in comparison.members:
         for name, side, curve in document_curves(member.document):
-            head = (member.label, member.group, name, side)
+            head = (member.label, member.group, name, side, unit_of_curve(name))
             rows.append((*head, "mean", curve.n_cycles, *curve.mean))
             rows.append((*head, "sd", curve.n_cycles, *curve.sd))
-    columns = ("result", "group", "curve", "side", "statistic", "n_cycles", *_percents())
+    columns = ("result", "group", "curve", "side", "unit", "statistic", "n_cycles", *_percents())
     return Table(columns=columns, rows=tuple(rows))
 
 
@@ -213,10 +216,12 @@ def _band_table(comparison: Comparison) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for group, members in comparison.groups().items():
         for (name, side), band in group_bands(members).items():
-            rows.append((group, name, side, "mean", band.n, *band.mean.tolist()))
+            head = (group, name, side, unit_of_curve(name))
+            rows.append((*head, "mean", band.n, *band.mean.tolist()))
             if band.sd is not None:
-                rows.append((group, name, side, "sd", band.n, *band.sd.tolist()))
-    return Table(columns=("group", "curve", "side", "statistic", "n_results", *_percents()), rows=tuple(rows))
+                rows.append((*head, "sd", band.n, *band.sd.tolist()))
+    columns = ("group", "curve", "side", "unit", "statistic", "n_results", *_percents())
+    return Table(columns=columns, rows=tuple(rows))
 
 
 def _missing_table(comparison: Comparison) -> Table:
@@ -231,6 +236,9 @@ def _missing_table(comparison: Comparison) -> Table:
             rows.append((member.label, member.group, "differences of scores", why))
         if document.scores is None:
             rows.append((member.label, member.group, "scores", "the result holds none"))
+        if document.kinetics is None or not document.kinetics.curves:
+            reasons = [] if document.kinetics is None else document.kinetics.missing
+            rows.append((member.label, member.group, "kinetics", "; ".join(reasons) or "the result holds none"))
         if document.weights is None:
             rows.append((member.label, member.group, "weights", "the result holds none"))
     return Table(columns=("result", "group", "what", "why"), rows=tuple(rows))
@@ -240,19 +248,25 @@ def _percents() -> tuple[str, ...]:
     return tuple(f"p{percent}" for percent in range(101))
 
 
-def document_curves(document: Document) -> Iterator[tuple[str, str, Curve]]:
-    """Every curve of a result with its name and side."""
-    for name in CURVES:
-        sides = document.kinematics.get(name)
+def document_curves(document: Document) -> Iterator[tuple[str, str, CycleCurve]]:
+    """Every curve of a result with its name and side: angles, then moments, powers and ground reactions."""
+    forces = {} if document.kinetics is None else document.kinetics.curves
+    for name in (*CURVES, *UNITS):
+        sides = document.kinematics.get(name) or forces.get(name)
         for side in SIDES:
-            curve: Curve | None = None if sides is None else getattr(sides, side)
+            curve: CycleCurve | None = None if sides is None else getattr(sides, side)
             if curve is not None:
                 yield name, side, curve
 
 
+def unit_of_curve(name: str) -> str:
+    """Unit of a curve of a result: deg for angles."""
+    return UNITS.get(name, "deg")
+
+
 def group_bands(members: Sequence[Member]) -> dict[tuple[str, str], Band]:
     """Band of each curve and side over the results of a group; a single result brings the spread of its cycles."""
-    gathered: dict[tuple[str, str], list[Curve]] = {}
+    gathered: dict[tuple[str, str], list[CycleCurve]] = {}
     for member in members:
         for name, side, curve in document_curves(member.document):
             if None not in curve.mean:
@@ -260,7 +274,7 @@ def group_bands(members: Sequence[Member]) -> dict[tuple[str, str], Band]:
     return {key: _band(curves) for key, curves in gathered.items()}
 
 
-def _band(curves: Sequence[Curve]) -> Band:
+def _band(curves: Sequence[CycleCurve]) -> Band:
     stacked = np.array([curve.mean for curve in curves], dtype=float)
     if len(stacked) > 1:
         return Band(mean=stacked.mean(axis=0), sd=stacked.std(axis=0, ddof=1), n=len(stacked))

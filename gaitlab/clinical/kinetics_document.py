@@ -1,10 +1,12 @@
 """The part of `result.json` on forces: moments, powers, ground reactions, contacts with the plates, EMG envelopes."""
 
+from collections.abc import Mapping
+
 import msgspec
 
 from ..mocap.recording import Side
 
-MOMENT_CURVES = (
+MOMENT_CURVES: tuple[str, ...] = (
     "hip_extensor_moment",
     "hip_abductor_moment",
     "hip_external_rotator_moment",
@@ -16,11 +18,11 @@ MOMENT_CURVES = (
     "ankle_external_rotator_moment",
 )
 """Internal moments, named after the muscles that a positive value loads [N*m/kg]."""
-POWER_CURVES = ("hip_power", "knee_power", "ankle_power")
+POWER_CURVES: tuple[str, ...] = ("hip_power", "knee_power", "ankle_power")
 """Positive when the muscles generate [W/kg]."""
-REACTION_CURVES = ("ground_reaction_vertical", "ground_reaction_forward", "ground_reaction_medial")
+REACTION_CURVES: tuple[str, ...] = ("ground_reaction_vertical", "ground_reaction_forward", "ground_reaction_medial")
 """What the ground exerts on the foot [% of body weight]."""
-UNITS = (
+UNITS: Mapping[str, str] = (
     dict.fromkeys(MOMENT_CURVES, "N*m/kg") | dict.fromkeys(POWER_CURVES, "W/kg") | dict.fromkeys(REACTION_CURVES, "%BW")
 )
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..clinical.document import CalibrationEntry, Document, WeightsEntry
 from ..errors import InvalidRecording, NotConverged, WorkerLost
-from ..inverse.conventional import ConventionalKinematics, joint_kinematics
+from ..inverse.conventional import ConventionalKinematics, KinematicsSettings, joint_kinematics
 from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
 from ..inverse.leg_kinetics import KineticsSettings
@@ -21,7 +21,7 @@ from ..signal.gaps import Gap, describe_gaps, fill_gaps
 from .calibration import assumed_parameters, calibrate_walk
 from .documents import Session, document_of
 from .kinetics import trial_kinetics
-from .model import motion_warnings, person_model, unsmoothed_motion, whole_model_motion
+from .model import motion_warnings, person_model, single_frames, whole_model_motion
 from .options import AnalysisOptions
 from .pooling import combine_entries
 from .progress import Progress, Step, silent
@@ -116,7 +116,7 @@ def _prepare(static: Recording | None, walk: Recording, options: AnalysisOptions
     progress(Step(stage="joint angles", trial=walk.name))
     recording, gaps = _filled(walk, options)
     calibration, entry = calibrate_walk(static, recording, options.parameters, options.static_offsets)
-    kinematics = joint_kinematics(recording, calibration)
+    kinematics = joint_kinematics(recording, calibration, KinematicsSettings(forward=options.forward))
     return _Walk(recording=recording, gaps=gaps, calibration=calibration, entry=entry, kinematics=kinematics)
 
 
@@ -178,7 +178,7 @@ def _request(
         events=events,
         subject=subject,
         q=motion.q,
-        unsmoothed=unsmoothed_motion(subject, walk.recording, walk.kinematics.heading, motion),
+        frames=single_frames(subject, walk.recording, walk.kinematics.heading, motion),
         heading=walk.kinematics.heading,
         criteria=options.criteria,
         seed=options.seed,

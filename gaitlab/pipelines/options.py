@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from ..errors import InvalidSubject, NotFound, ProblemError
+from ..inverse.clinical_angles import Forward
 from ..inverse.leg_kinetics import InertiaConvention, MomentFrame
 from ..multibody.anthropometry import AnthropometryName
 from ..walking.contact_schedule import Landing
@@ -33,6 +34,9 @@ class AnalysisOptions:
     """Detect events although the file has some."""
     static_offsets: StaticOffsets = "computed"
     """Whether offsets computed from the static trial are used, or those stored in its file."""
+    forward: Forward = "laboratory axis"
+    """What pelvis rotation, foot progression and the ground reaction's forward part are measured against: the
+    laboratory axis next to the walking direction, as in Plug-in Gait, or that direction itself."""
     longest_gap: float = 0.1
     """Longest gap in a marker that is filled [s]."""
     anthropometry: AnthropometryName = "corrected"

@@ -21,6 +21,17 @@ _CONVENTIONS = (
     "is drawn solid, right dashed."
 )
 
+_FORWARD = {
+    "laboratory axis": "the laboratory axis next to the walking direction, as in Plug-in Gait",
+    "heading": "the walking direction",
+}
+_DISTANCES = (
+    "Cycle: foot strike to next foot strike of the same side; mean ± standard deviation over the cycles. Stride "
+    "length: way of the heel marker on the floor, and its direction is that of progression; step length and step time "
+    "belong to the foot that lands; step width: distance of the opposite foot's strike from the line through the own "
+    "two. Double support is the sum of both phases of a cycle."
+)
+
 
 def subject_section(result: Result) -> Section:
     """Subject and input files with their fingerprints."""
@@ -107,7 +118,15 @@ def kinematics_section(result: Result) -> Section:
     gap = missing(", ".join(absent), "result.json has no complete cycle of them") if absent else None
     average = average_figure(result.kinematics, marks_of(result), norms_of(result))
     lead = paragraph(_cycles_used(result), "lead")
-    return section("Kinematics", lead, picture(average), paragraph(_CONVENTIONS, "note"), gap)
+    conventions = paragraph(f"{_CONVENTIONS} {_forward(result)}", "note")
+    return section("Kinematics", lead, picture(average), conventions, gap)
+
+
+def _forward(result: Result) -> str:
+    """What rotations about the vertical are measured against."""
+    stated = result.part("settings").get("forward")
+    words = _FORWARD.get(str(stated), "a direction that the result does not state")
+    return f"Pelvis rotation and foot progression are measured against {words}."
 
 
 def _cycles_used(result: Result) -> str:
@@ -171,7 +190,8 @@ def spatiotemporal_section(result: Result) -> Section:
     words = f"Reference: {norms_of(result).description}; distances for this person's leg length."
     norm = paragraph(words if reference else "No normative column: no reference cohort applies.", "note")
     header = ("", "left", "right", "reference")[: columns + 1]
-    return section(title, table(header, rows, kind="sides"), norm, _dimensionless(sides))
+    conventions = paragraph(_DISTANCES, "note")
+    return section(title, table(header, rows, kind="sides"), norm, conventions, _dimensionless(sides))
 
 
 def spatiotemporal_cells(result: Result) -> dict[str, tuple[str, str, str]]:

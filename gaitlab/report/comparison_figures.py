@@ -9,8 +9,10 @@ from ..clinical.comparison import Band, Comparison, Member, group_bands, quantit
 from ..clinical.document import SIDES
 from ..clinical.gait_profile import GPS_MINIMAL_DIFFERENCE
 from .colours import CENTRE, SIDE
+from .cycle_panels import CyclePanel
 from .formatting import label
-from .kinematics_figure import NO_NORMS, PANELS, PERCENT, Norms, Panel, norm_band
+from .kinematics_figure import NO_NORMS, PANELS, PERCENT, Norms, norm_band
+from .kinetics_figure import PANELS as FORCE_PANELS
 from .result import Curve
 from .svg import (
     Axes,
@@ -64,29 +66,46 @@ class _Dot:
 
 
 def figures(comparison: Comparison) -> dict[str, str]:
-    """Every figure by name: curves, scores, spatiotemporal, weights; the latter only where a result has weights."""
+    """Every figure by name: curves, scores, spatiotemporal; kinetics and weights only where a result has some."""
     found = {
         "curves": curves_figure(comparison),
         "scores": dots_figure(comparison, SCORE_SCALES, "Scores"),
         "spatiotemporal": dots_figure(comparison, SCALES, "Distances and times"),
     }
+    if any(m.document.kinetics is not None and m.document.kinetics.curves for m in comparison.members):
+        found["kinetics"] = kinetics_figure(comparison)
     series = weight_series(comparison)
     return {**found, **({"weights": weights_figure(series)} if series else {})}
 
 
 def curves_figure(comparison: Comparison) -> str:
-    """Nine panels: mean of each group with its band (of one result: of its cycles), grey the reference cohort."""
+    """Nine angles: mean of each group with its band (of one result: of its cycles), grey the reference cohort."""
+    lines = ("angles in deg, signs as on the axes",)
+    return _curves_page(comparison, PANELS, lines, "Joint angles over the gait cycle")
+
+
+def kinetics_figure(comparison: Comparison) -> str:
+    """The same of moments, powers and ground reactions."""
+    frames = {m.document.kinetics.moments_in for m in comparison.members if m.document.kinetics is not None}
+    words = f"moments: internal, per body mass, in {' / '.join(sorted(frames))}; power: generation positive"
+    lines = (words, *(("moments are not comparable: they are in different axes",) if len(frames) > 1 else ()))
+    return _curves_page(comparison, FORCE_PANELS, lines, "Kinetics over the gait cycle")
+
+
+def _curves_page(comparison: Comparison, panels: Sequence[CyclePanel], extra: Sequence[str], title: str) -> str:
     groups = comparison.groups()
     if len(groups) > len(DASHES):
         groups = {f"all {len(comparison.members)} results": comparison.members}
     bands = {name: group_bands(members) for name, members in groups.items()}
     norms = _norms(comparison.members)
-    content = "".join(_curve_panel(panel, bands, norms) for panel in PANELS)
+    content = "".join(_curve_panel(panel, bands, norms) for panel in panels)
     lines = ["band: ± 1 SD between the results of a group (of one result: between its cycles); fixed scales"]
     lines.append(f"grey: mean ± 1 SD of {norms.description}" if norms.curves else "grey: no common reference cohort")
-    legend = _legend({name: len(members) for name, members in groups.items()}, 820.0)
-    words = "".join(text(w, 66.0, 876.0 + 17.0 * k, **{"class": "note"}) for k, w in enumerate(lines))
-    return _standalone(905.0, content + legend + words, "Joint angles over the gait cycle")
+    bottom = max(panel.axes.bottom for panel in panels) + 56.0
+    legend = _legend({name: len(members) for name, members in groups.items()}, bottom)
+    notes = enumerate((*lines, *extra))
+    words = "".join(text(w, 66.0, bottom + 56.0 + 17.0 * k, **{"class": "note"}) for k, w in notes)
+    return _standalone(bottom + 70.0 + 17.0 * (1 + len(extra)), content + legend + words, title)
 
 
 def _norms(members: Sequence[Member]) -> Norms:
@@ -95,16 +114,16 @@ def _norms(members: Sequence[Member]) -> Norms:
     first = references[0] if references else None
     if first is None or len(references) < len(members):
         return NO_NORMS
-    if any(reference is None or reference.curves != first.curves for reference in references):
+    bands = first.curves | first.kinetics
+    if any(reference is None or reference.curves | reference.kinetics != bands for reference in references):
         return NO_NORMS
     curves = {
-        name: Curve(mean=np.array(band.mean), sd=np.array(band.sd), n_cycles=first.n)
-        for name, band in first.curves.items()
+        name: Curve(mean=np.array(band.mean), sd=np.array(band.sd), n_cycles=first.n) for name, band in bands.items()
     }
     return Norms(description=first.description, curves=curves)
 
 
-def _curve_panel(panel: Panel, bands: Mapping[str, Mapping[tuple[str, str], Band]], norms: Norms) -> str:
+def _curve_panel(panel: CyclePanel, bands: Mapping[str, Mapping[tuple[str, str], Band]], norms: Norms) -> str:
     axes = panel.axes
     drawn = [norm_band(panel, norms)]
     for dash, group in zip(DASHES, bands.values(), strict=False):
@@ -115,7 +134,7 @@ def _curve_panel(panel: Panel, bands: Mapping[str, Mapping[tuple[str, str], Band
         [
             frame(axes, (0.0, 20.0, 40.0, 60.0, 80.0, 100.0), ticks(*panel.scale, 5)),
             text(panel.title, axes.left, axes.top - 8.0, **{"class": "title"}),
-            text(f"{panel.negative} / {panel.positive} [deg]", x, middle, **turned),
+            text(panel.direction, x, middle, **turned),
             text("% of cycle", axes.right, axes.bottom + 29.0, **{"class": "note", "text_anchor": "end"}),
             clipped(axes, "".join(drawn)),
         ]

@@ -31,7 +31,11 @@ def kinetics_sections(result: Result) -> tuple[Section, ...]:
         "Number of cycles with a valid plate contact: " + ", ".join(f"{side} {n}" for side, n in counts.items()) + "."
     )
     axes = part.get("moments_in") or "axes that are not stated"
-    words = f"{_CONVENTIONS} Moments are expressed in {axes}; inertia of {part.get('inertia') or 'unknown source'}."
+    words = (
+        f"{_CONVENTIONS} Moments are expressed in {axes}; inertia of {part.get('inertia') or 'unknown source'}. The "
+        "forward part of the ground reaction follows the direction that foot progression is measured against; medial "
+        "is towards the other foot."
+    )
     page = section(
         "Kinetics",
         paragraph(lead, "lead"),

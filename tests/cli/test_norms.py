@@ -152,3 +152,13 @@ def test_a_folder_without_results_makes_no_norms(gaitlab, tmp_path):
 def test_bundled_norms_are_shown(gaitlab):
     code, out, _ = gaitlab("norms", "show")
     assert code == 0 and "Schwartz MH, Rozumalski A, Trost JP" in out and "very fast" in out
+
+
+def test_what_is_forward_is_a_choice_and_printed(analysed):
+    axis, text = analysed()
+    assert "measured against the laboratory axis next to the walking direction, as in Plug-in Gait" in text
+    along, text = analysed("--along-walk")
+    assert "measured against the walking direction." in text and along["settings"]["forward"] == "heading"
+    left = [np.array(result["kinematics"]["foot_progression"]["left"]["mean"]) for result in (axis, along)]
+    turned = left[0] - left[1]  # by one angle throughout, the other way on the other foot
+    assert 0.05 < abs(turned.mean()) < 5.0 and turned.std() < 0.1

@@ -7,7 +7,9 @@ from gaitlab.clinical.cohort_building import CohortSettings, build_cohort
 from gaitlab.clinical.comparison import Member, compare, group_bands, tables
 from gaitlab.clinical.document import CURVES, Document
 from gaitlab.clinical.gait_profile import gait_profile
+from gaitlab.clinical.kinetics_document import UNITS
 from gaitlab.errors import InvalidReference, NotFound, ProblemError
+from gaitlab.report.comparison_figures import figures
 
 
 def shifted(degrees, gps=None, speed=1.0, description="norms"):
@@ -54,6 +56,51 @@ def test_scores_of_different_references_have_no_difference():
     comparison = compare([member("a", degrees=0.0, gps=9.0), member("b", degrees=0.0, gps=7.0, description="other")])
     assert row(comparison, "b", "gps_overall", "")["difference"] is None
     assert ("b", "b", "differences of scores", "other references than a has") in tables(comparison)["missing"].rows
+
+
+def forces(value, moments_in="the axes of the segment below the joint"):
+    curves = {
+        name: {"unit": unit, "left": {"mean": [value] * 101, "sd": [None] * 101, "n_cycles": 1}}
+        for name, unit in UNITS.items()
+    }
+    return {"curves": curves, "moments_in": moments_in, "inertia": "i", "contacts": [], "missing": []}
+
+
+def with_forces(label, value, **more):
+    written = msgspec.to_builtins(shifted(degrees=0.0)) | {"kinetics": forces(value, **more)}
+    return Member(label=label, group="one", document=msgspec.convert(written, Document))
+
+
+def test_kinetics_are_compared_like_angles():
+    comparison = compare([with_forces("a", 1.0), with_forces("b", 3.0)])
+    band = group_bands(comparison.members)["hip_power", "left"]
+    assert (band.mean[0], band.n, band.sd[0]) == (2.0, 2, pytest.approx(np.sqrt(2.0)))
+    table = tables(comparison)["bands"]
+    units = {row[table.columns.index("curve")]: row[table.columns.index("unit")] for row in table.rows}
+    assert (units["hip_power"], units["knee_flexion"]) == ("W/kg", "deg")
+    drawn = figures(comparison)["kinetics"]
+    assert "in the axes of the segment below the joint" in drawn and "not comparable" not in drawn
+
+
+def test_moments_in_different_axes_are_told():
+    comparison = compare([with_forces("a", 1.0), with_forces("b", 3.0, moments_in="the laboratory")])
+    assert "moments are not comparable" in figures(comparison)["kinetics"]
+
+
+def test_results_without_kinetics_are_told():
+    comparison = compare([with_forces("a", 1.0), member("b", degrees=0.0)])
+    assert ("b", "b", "kinetics", "the result holds none") in tables(comparison)["missing"].rows
+    assert "kinetics" not in figures(compare([member("b", degrees=0.0)]))
+
+
+def test_a_result_with_nothing_but_curves_is_compared_in_them():
+    written = msgspec.to_builtins(shifted(degrees=0.0))
+    bare = written | {"weights": None, "scores": None, "inputs": [], "events": [], "spatiotemporal": {}}
+    bare = Member(label="bare", group="bare", document=msgspec.convert(bare, Document))
+    comparison = compare([member("whole", degrees=0.0), bare])
+    assert {"curves", "scores", "spatiotemporal", "weights"} == set(figures(comparison))
+    missing = {row[2] for row in tables(comparison)["missing"].rows if row[0] == "bare"}
+    assert missing == {"scores", "kinetics", "weights"}
 
 
 def test_bands_of_a_group_are_point_by_point():
