@@ -16,7 +16,6 @@ from .export import export_results
 from .inspect import inspect
 from .norms import norms
 from .predict import predict
-from .predict import predict
 from .openapi import openapi
 from .report import report
 from .schema import schema
@@ -34,7 +33,6 @@ for command in (analyse, inspect, view, schema, demo, *SERVER_COMMANDS, openapi)
     app.command()(command)
 app.command(name="demo-data")(demo_data)
 app.command(name="compare")(compare_results)
-app.command()(predict)
 app.command()(predict)
 app.command(name="export")(export_results)
 app.add_typer(benchmark)
