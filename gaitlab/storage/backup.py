@@ -93,7 +93,7 @@ def _write(database: Database, store: FileStore | None, archive: tarfile.TarFile
             gaitlab=__version__,
             revision=present_revision(database),
             made_at=now().isoformat(),
-            tables={table.name: tuple(column.name for column in table.c) for table in tables},
+            tables={str(table.name): tuple(str(column.name) for column in table.c) for table in tables},
             files=len(digests),
         )
         _add(archive, "manifest.json", io.BytesIO(msgspec.json.encode(manifest)))

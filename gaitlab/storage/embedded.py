@@ -81,10 +81,14 @@ class EmbeddedPostgres:
             _check_parents(self._data_dir)
         with _locked(self._data_dir / "postgres.lock"):
             self._join()
-            if not (self.cluster / "PG_VERSION").exists():
-                self._initialise()
-            self._ensure_running()
-            self._make_database()
+            try:
+                if not (self.cluster / "PG_VERSION").exists():
+                    self._initialise()
+                self._ensure_running()
+                self._make_database()
+            except StorageError:
+                self._leave()
+                raise
         return self.url
 
     def ensure_running(self) -> bool:
@@ -110,14 +114,15 @@ class EmbeddedPostgres:
         if self._users is None:
             return
         with _locked(self._data_dir / "postgres.lock"):
-            users, self._users = self._users, None
-            with users:
-                fcntl.flock(users, fcntl.LOCK_UN)
-                try:
-                    fcntl.flock(users, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:
-                    return
+            try:
+                fcntl.flock(self._users, fcntl.LOCK_UN)
+                fcntl.flock(self._users, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 self._stop_server()
+            except BlockingIOError:
+                # Somebody else still uses it.
+                return
+            finally:
+                self._leave()
 
     def _stop_server(self) -> None:
         try:
@@ -132,6 +137,11 @@ class EmbeddedPostgres:
         if self._users is None:
             self._users = (self._data_dir / "postgres.users").open("ab")
             fcntl.flock(self._users, fcntl.LOCK_SH)
+
+    def _leave(self) -> None:
+        if self._users is not None:
+            self._users.close()
+            self._users = None
 
     def _password(self) -> str:
         path = self._data_dir / "secrets" / "postgres-password"

@@ -66,7 +66,7 @@ class FileStore:
             # The hash is of the plain bytes, the spooled file already has the stored form.
             plain = _Tee(chunks, hashed.update)
             for piece in plain if self._key is None else self._key.encrypt(plain):
-                file.write(piece)
+                _write(file, piece)
             size = plain.size
             digest = hashed.hexdigest()
             name = self.object_name(digest)
@@ -174,10 +174,18 @@ def open_store(settings: Settings) -> FileStore:
 @contextmanager
 def _spooled(folder: Path) -> Generator[BinaryIO]:
     try:
-        with tempfile.NamedTemporaryFile(dir=folder, prefix="part-") as file:
-            yield file  # type: ignore[misc]
+        file = tempfile.NamedTemporaryFile(dir=folder, prefix="part-")
     except OSError as error:
-        raise StorageError(f"the file store cannot be written ({error.strerror or error})") from error
+        raise StorageError(f"the file store cannot be written ({error.strerror})") from error
+    with file:
+        yield file  # type: ignore[misc]
+
+
+def _write(file: BinaryIO, piece: bytes) -> None:
+    try:
+        file.write(piece)
+    except OSError as error:
+        raise StorageError(f"the file store cannot be written ({error.strerror})") from error
 
 
 def _pieces(file: BinaryIO) -> Iterator[bytes]:

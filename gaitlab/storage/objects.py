@@ -28,6 +28,12 @@ class DiskObjects:
 
     def write(self, name: str, source: BinaryIO) -> None:
         """Link the spooled file `source` under its name once its bytes are safe."""
+        try:
+            self._write(name, source)
+        except OSError as error:
+            raise StorageError(f"the file store cannot be written ({error.strerror})") from error
+
+    def _write(self, name: str, source: BinaryIO) -> None:
         source.flush()
         os.fsync(source.fileno())
         target = self._path(name)

@@ -18,7 +18,10 @@ from gaitlab.storage.embedded import LONGEST_SOCKET, SOCKET, EmbeddedPostgres
 
 STRANGER = 61234
 CONNECT = """
-import socket, sys
+import os, socket, sys
+os.setgroups([])
+os.setgid(int(sys.argv[2]))
+os.setuid(int(sys.argv[2]))
 socket.socket(socket.AF_UNIX).connect(sys.argv[1])
 """
 
@@ -66,8 +69,8 @@ def test_folders_are_closed_to_others(server):
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can act as another user")
 def test_another_local_user_cannot_reach_the_socket(server):
-    command = [sys.executable, "-c", CONNECT, socket_of(server)]
-    stranger = subprocess.run(command, user=STRANGER, group=STRANGER, extra_groups=[], capture_output=True, text=True)
+    command = [sys.executable, "-c", CONNECT, socket_of(server), str(STRANGER)]
+    stranger = subprocess.run(command, capture_output=True, text=True)
     assert "PermissionError" in stranger.stderr
     with socket.socket(socket.AF_UNIX) as ours:
         ours.connect(socket_of(server))
