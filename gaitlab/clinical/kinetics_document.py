@@ -6,7 +6,7 @@ import msgspec
 
 from ..mocap.recording import Side
 
-MOMENT_CURVES: tuple[str, ...] = (
+MOMENT_CURVES = (
     "hip_extensor_moment",
     "hip_abductor_moment",
     "hip_external_rotator_moment",
@@ -18,13 +18,15 @@ MOMENT_CURVES: tuple[str, ...] = (
     "ankle_external_rotator_moment",
 )
 """Internal moments, named after the muscles that a positive value loads [N*m/kg]."""
-POWER_CURVES: tuple[str, ...] = ("hip_power", "knee_power", "ankle_power")
+POWER_CURVES = ("hip_power", "knee_power", "ankle_power")
 """Positive when the muscles generate [W/kg]."""
-REACTION_CURVES: tuple[str, ...] = ("ground_reaction_vertical", "ground_reaction_forward", "ground_reaction_medial")
+REACTION_CURVES = ("ground_reaction_vertical", "ground_reaction_forward", "ground_reaction_medial")
 """What the ground exerts on the foot [% of body weight]."""
-UNITS: Mapping[str, str] = (
-    dict.fromkeys(MOMENT_CURVES, "N*m/kg") | dict.fromkeys(POWER_CURVES, "W/kg") | dict.fromkeys(REACTION_CURVES, "%BW")
-)
+UNITS: Mapping[str, str] = {
+    **{name: "N*m/kg" for name in MOMENT_CURVES},
+    **{name: "W/kg" for name in POWER_CURVES},
+    **{name: "%BW" for name in REACTION_CURVES},
+}
 
 
 class CycleAverage(msgspec.Struct, frozen=True, kw_only=True):
