@@ -128,6 +128,8 @@ class CriterionWeight(msgspec.Struct, frozen=True, kw_only=True):
     """Value of the criterion on the tracked walk, own units."""
     at_bound: bool = False
     """True where the weight is zero because the simplex ends there."""
+    interval_95: list[float] | None = None
+    """Values that the data allow with 95 % confidence; at zero one-sided, with all the error above."""
 
 
 class Fit(msgspec.Struct, frozen=True, kw_only=True):
@@ -181,6 +183,8 @@ class PooledWeights(msgspec.Struct, frozen=True, kw_only=True):
     n_strides: int
     weights: dict[str, float]
     between_stride_sd: dict[str, float | None]
+    bootstrap_95: dict[str, list[float]] = {}
+    """Percentile intervals of the mean weights, strides drawn with replacement; with three strides or more."""
 
 
 class WeightsEntry(msgspec.Struct, frozen=True, kw_only=True):
@@ -191,6 +195,8 @@ class WeightsEntry(msgspec.Struct, frozen=True, kw_only=True):
     solver: Solver
     covariance: list[list[float | None]] = []
     """Of the weights in the order of `criteria`."""
+    not_told_apart: list[list[str]] = []
+    """Pairs of criteria of which one could take over the other's weight without a worse fit than chance."""
     correlation: list[list[float | None]] = []
     comparison: Comparison | None = None
     strides: list[StrideWeights] = []

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ..bilevel.weight_intervals import bootstrap_means
 from ..clinical.document import (
     Comparison,
     CriterionWeight,
@@ -13,6 +14,9 @@ from ..clinical.document import (
     StrideWeights,
     WeightsEntry,
 )
+
+FEWEST = 3
+"""Strides without which a bootstrap says nothing."""
 
 
 def pool_strides(strides: Sequence[StrideWeights]) -> PooledWeights:
@@ -24,6 +28,7 @@ def pool_strides(strides: Sequence[StrideWeights]) -> PooledWeights:
         n_strides=len(strides),
         weights=dict(zip(names, np.mean(values, axis=0).tolist(), strict=True)),
         between_stride_sd={name: _known(sd) for name, sd in zip(names, spread.tolist(), strict=True)},
+        bootstrap_95=dict(zip(names, bootstrap_means(values).tolist(), strict=True)) if len(strides) >= FEWEST else {},
     )
 
 

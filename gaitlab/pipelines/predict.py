@@ -55,6 +55,8 @@ def predict_walk(
         GaitlabError: the request is wrong, or the identified gait is no strict minimum.
     """
     request = parse_request(assignments, Present(source.gait))
+    if not request.values:
+        settings = replace(settings or PredictionSettings(), first_step=1.0)
     begin = perf_counter()
 
     def tell(share: float, _steps: int) -> None:

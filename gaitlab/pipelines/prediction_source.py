@@ -2,15 +2,13 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
 
 import msgspec
-import numpy as np
 
 from ..clinical.document import Document, read_document
 from ..errors import InvalidRecording, NotFound, OutputError
 from ..inverse.conventional_calibration import Calibration
-from ..walking.identified_gait import FILE, IdentifiedGait, read_gait, write_gait
+from ..walking.identified_gait import FILE, IdentifiedGait, decode_array, encode_array, read_gait, write_gait
 
 CALIBRATION = "calibration.json"
 
@@ -30,7 +28,7 @@ def write_source(gait: IdentifiedGait, calibration: Calibration, folder: Path) -
     write_gait(gait, folder / FILE)
     path = folder / CALIBRATION
     try:
-        path.write_bytes(msgspec.json.format(msgspec.json.encode(calibration, enc_hook=_encode), indent=2) + b"\n")
+        path.write_bytes(msgspec.json.format(msgspec.json.encode(calibration, enc_hook=encode_array), indent=2) + b"\n")
     except OSError as error:
         raise OutputError(f"{path} cannot be written ({error.strerror}): choose a folder you may write to") from error
 
@@ -52,20 +50,8 @@ def read_source(folder: Path, trial: str = "") -> PredictionSource:
     chosen = trials[trial] if trial else next(iter(trials.values()), folder)
     gait, path = read_gait(chosen / FILE), chosen / CALIBRATION
     try:
-        calibration = msgspec.json.decode(path.read_bytes(), type=Calibration, dec_hook=_decode)
+        calibration = msgspec.json.decode(path.read_bytes(), type=Calibration, dec_hook=decode_array)
     except (OSError, msgspec.MsgspecError) as error:
         raise InvalidRecording(f"{path} cannot be read ({error}): run 'gaitlab analyse' again") from error
     document = read_document(chosen / "result.json")
     return PredictionSource(name=chosen.resolve().name, gait=gait, calibration=calibration, document=document)
-
-
-def _encode(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return cast("np.ndarray", value).tolist()
-    raise NotImplementedError(type(value))
-
-
-def _decode(kind: type, value: Any) -> Any:
-    if kind is np.ndarray:
-        return np.array(value, dtype=float)
-    raise NotImplementedError(kind)

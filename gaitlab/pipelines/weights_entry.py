@@ -8,6 +8,7 @@ from ..bilevel.uncertainty import correlation
 from ..clinical.document import Comparison, CriterionWeight, Fit, Solver, StrideWeights, WeightsEntry
 from ..mocap.cycles import Cycle
 from ..walking.explanation import Explanation
+from .weight_confidence import confidence_intervals, confused_criteria
 
 AT_BOUND = 1e-4
 """Weights below this are zero because the simplex ends there."""
@@ -49,6 +50,7 @@ def weights_entry(found: Explanation, seconds: float) -> WeightsEntry:
         solver=_solver(found, seconds),
         covariance=_finite(covariance),
         correlation=_finite(correlation(covariance)),
+        not_told_apart=confused_criteria(found),
         comparison=Comparison(equal_weights_rms_rad=found.equal_rms, single_criterion_rms_rad=dict(found.single_rms)),
         notes=_notes(found),
     )
@@ -73,6 +75,7 @@ def _criteria(found: Explanation) -> list[CriterionWeight]:
     terms = found.optimum.cost_terms()
     total = sum(terms.values())
     variances = np.diag(estimate.covariance)
+    intervals = confidence_intervals(found)
     return [
         CriterionWeight(
             name=name,
@@ -83,6 +86,7 @@ def _criteria(found: Explanation) -> list[CriterionWeight]:
             cost_share=terms[name] / total,
             tracked_value=float(level.normalisers[k]),
             at_bound=bool(estimate.theta[k] < AT_BOUND),
+            interval_95=intervals[k],
         )
         for k, name in enumerate(level.settings.criteria)
     ]
@@ -131,6 +135,11 @@ def _notes(found: Explanation) -> list[str]:
     blind = [n for n, known in zip(settings.criteria, found.estimate.identifiable, strict=True) if not known]
     if blind:
         notes.append(f"The data do not tell the weights of: {', '.join(blind)}.")
+    notes += [
+        f"The data cannot tell {first} and {second} apart: one could take over the other's weight without a worse fit "
+        "than chance. Read only the sum of both weights."
+        for first, second in confused_criteria(found)
+    ]
     return notes
 
 

@@ -86,13 +86,15 @@ class _Described(msgspec.Struct, frozen=True, kw_only=True):
     limited: tuple[int, ...]
 
 
-def _encode(value: Any) -> Any:
+def encode_array(value: Any) -> Any:
+    """Arrays of any shape (n, ...) as nested lists, for msgspec."""
     if isinstance(value, np.ndarray):
         return cast("np.ndarray", value).tolist()
     raise NotImplementedError(type(value))
 
 
-def _decode(kind: type, value: Any) -> Any:
+def decode_array(kind: type, value: Any) -> Any:
+    """Nested lists as arrays of any shape (n, ...), for msgspec."""
     if kind is np.ndarray:
         return np.array(value, dtype=float)
     raise NotImplementedError(kind)
@@ -116,7 +118,7 @@ def write_gait(gait: IdentifiedGait, path: Path) -> None:
     arrays = {name: getattr(data, name) for name in DATA} | {name: getattr(gait.solution, name) for name in SOLUTION}
     arrays |= {"times": gait.stride.times, "reference": gait.stride.reference, "given": data.given}
     arrays |= {"given_nodes": gait.given_nodes, "weights": gait.weights}
-    text = np.frombuffer(msgspec.json.encode(described, enc_hook=_encode), dtype=np.uint8)
+    text = np.frombuffer(msgspec.json.encode(described, enc_hook=encode_array), dtype=np.uint8)
     try:
         np.savez_compressed(path, allow_pickle=False, described=text, **arrays)
     except OSError as error:
@@ -133,7 +135,7 @@ def read_gait(path: Path) -> IdentifiedGait:
     try:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-        described = msgspec.json.decode(arrays["described"].tobytes(), type=_Described, dec_hook=_decode)
+        described = msgspec.json.decode(arrays["described"].tobytes(), type=_Described, dec_hook=decode_array)
         gait = _built(described, arrays)
     except FileNotFoundError as error:
         raise InvalidRecording(

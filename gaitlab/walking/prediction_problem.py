@@ -213,12 +213,9 @@ class PredictionProblem:
             raise ProblemError("the identified gait lies outside the limits of the first problem of the continuation")
         s, lam_c = values.c.copy(), x.mu / values.c
         old, new = self.gait.problem.shared, self.structure
-        for before, after, at in ((old.clear, new.clear, old.n_cone),):
-            place = {row: at + i for i, row in enumerate(before)}
-            for i, row in enumerate(after):
-                if row in place:
-                    s[new.n_cone + i], lam_c[new.n_cone + i] = x.s[place[row]], x.lam_c[place[row]]
-        s[: new.n_cone], lam_c[: new.n_cone] = x.s[: new.n_cone], x.lam_c[: new.n_cone]
+        before = [*range(new.n_cone), *(old.n_cone + old.clear.index(row) for row in new.clear if row in old.clear)]
+        after = [*range(new.n_cone), *(new.n_cone + i for i, row in enumerate(new.clear) if row in old.clear)]
+        s[after], lam_c[after] = x.s[before], x.lam_c[before]
         lam_g = np.zeros(problem.structure.n_g)
         n_residual = 2 * new.layout.n_intervals * ROOT
         lam_g[:n_residual] = x.lam_g[:n_residual]

@@ -34,6 +34,14 @@ def test_spread_is_the_sample_standard_deviation():
     assert pooled.between_stride_sd["a"] == pytest.approx(0.2 / 2**0.5)
 
 
+def test_three_strides_are_enough_for_a_bootstrap():
+    values = (0.2, 0.3, 0.4)
+    low, high = pool_strides([stride(value) for value in values]).bootstrap_95["a"]
+    assert low == pytest.approx(0.2)
+    assert high == pytest.approx(0.4)
+    assert pool_strides([stride(0.2), stride(0.4)]).bootstrap_95 == {}
+
+
 def test_the_larger_of_both_variances_counts():
     apart, alike = combine_entries([entry(0.2), entry(0.4)]), combine_entries([entry(0.3), entry(0.3)])
     assert apart.criteria[0].sd == pytest.approx(0.1)

@@ -24,12 +24,15 @@ TERMS = dict(zip(CRITERIA, (3.0, 1.0, 0.0), strict=True)) | {
 }
 RESIDUAL = np.repeat(0.01 * np.arange(1, 10), 3) * np.ones((5, 1))
 """Each group of three coordinates is off by its own amount, in all of five instants."""
+JACOBIAN = np.random.default_rng(2).normal(size=(RESIDUAL.size, 3))
+JACOBIAN -= RESIDUAL.reshape(-1, 1) @ (RESIDUAL.reshape(1, -1) @ JACOBIAN) / np.sum(RESIDUAL**2)
+"""No weight moves the optimum towards the measurement: the weights are the best fit."""
 
 
 class MadeUp:
     """What `weights_entry` reads of an Explanation."""
 
-    def __init__(self, certified=True, minimum=True):
+    def __init__(self, certified=True, minimum=True, states_estimated=False):
         residuals = KKTResiduals(stationarity=2e-9, primal=3e-9, complementarity=1e-7)
         nothing = np.zeros(0)
         solution = SparseSolution(
@@ -37,6 +40,7 @@ class MadeUp:
             mu=1e-7, iterations=4, residuals=residuals, status=Status.SOLVED,
         )  # fmt: skip
         self.is_certified, self.tracking_seconds = certified, 3.0
+        self.states_estimated = states_estimated
         self.equal_rms, self.single_rms = 0.08, {"torque": 0.09, "lateral_stability": None, "hip_rotation_torque": 0.1}
         self.tracked = SimpleNamespace(
             rms=0.02, solution=SimpleNamespace(iterations=20), stride=SimpleNamespace(times=np.linspace(0.0, 1.0, 46))
@@ -61,6 +65,7 @@ class MadeUp:
             iterations=6,
             lower_iterations=30,
             reason="iteration limit reached",
+            response=SimpleNamespace(jacobian=lambda: JACOBIAN, residual_by_time=lambda: RESIDUAL),
         )
 
 
@@ -82,6 +87,28 @@ def test_spread_is_left_out_where_it_is_infinite(entry):
     assert entry.covariance[2][2] is None
     assert entry.correlation == [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]]
     assert any("do not tell" in note and "hip_rotation_torque" in note for note in entry.notes)
+
+
+def test_intervals_hold_the_weights_and_end_at_zero(entry):
+    intervals = [c.interval_95 for c in entry.criteria]
+    assert all(low <= weight <= high for (low, high), weight in zip(intervals, THETA, strict=True))
+    assert intervals[2][0] == 0.0 < intervals[2][1]
+    assert entry.not_told_apart == []
+
+
+def test_with_estimated_states_intervals_come_from_the_covariance():
+    found = weights_entry(MadeUp(states_estimated=True), 1.0)
+    assert found.criteria[0].interval_95 == pytest.approx([0.75 - 0.196, 0.75 + 0.196], abs=1e-4)
+    assert found.criteria[1].interval_95 == pytest.approx([0.0, 0.25 + 0.392], abs=1e-4)
+    assert found.criteria[2].interval_95 is None
+
+
+def test_criteria_that_do_the_same_are_named():
+    twins = MadeUp()
+    twins.estimate.response.jacobian = lambda: JACOBIAN[:, [0, 0, 2]]
+    found = weights_entry(twins, 1.0)
+    assert found.not_told_apart == [["torque", "lateral_stability"]]
+    assert any("cannot tell torque and lateral_stability apart" in note for note in found.notes)
 
 
 def test_shares_of_the_cost_add_up_to_one(entry):
