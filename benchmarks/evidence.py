@@ -13,6 +13,7 @@ from pathlib import Path
 
 import issue2_kinematics  # noqa: F401 - registers its measurements
 import issue2_main_job  # noqa: F401 - registers its measurements
+import issue2_recovery  # noqa: F401 - registers its measurements
 import issue2_weights  # noqa: F401 - registers its measurements
 import issue3_continuation  # noqa: F401 - registers its measurements
 import issue3_minimax  # noqa: F401 - registers its measurements
@@ -24,6 +25,7 @@ import issue4_prediction  # noqa: F401 - registers its measurements
 import issue5_comparison  # noqa: F401 - registers its measurements
 import issue5_kinetics  # noqa: F401 - registers its measurements
 import issue5_report  # noqa: F401 - registers its measurements
+import issue6_service  # noqa: F401 - registers its measurements
 from registry import MEASUREMENTS, ROOT, Measurement, holds
 
 FOLDER = ROOT / "benchmarks" / "evidence"

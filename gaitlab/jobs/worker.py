@@ -48,59 +48,55 @@ class Worker:
     def __init__(self, settings: Settings, database: Database, store: FileStore) -> None:
         self._settings, self._database, self._store = settings, database, store
         self.name = f"{os.uname().nodename}-{os.getpid()}-{uuid4().hex[:6]}"
+        self._parent = settings.data_dir / "work"
+        self.runner = Runner(
+            database=database, store=store, settings=settings, worker=self.name, workspace=self._parent / self.name
+        )
         self._stop = asyncio.Event()
 
     async def run(self) -> None:
         """Work until SIGTERM or SIGINT; running jobs are then given back to the queue."""
-        with workspace(self._settings.data_dir / "work", self.name) as folder:
-            await self._run(
-                Runner(
-                    database=self._database,
-                    store=self._store,
-                    settings=self._settings,
-                    worker=self.name,
-                    workspace=folder,
-                )
-            )
+        with workspace(self._parent, self.name):
+            await self._run()
 
-    async def _run(self, runner: Runner) -> None:
+    async def _run(self) -> None:
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGINT):
-            loop.add_signal_handler(number, self.stop, runner)
+            loop.add_signal_handler(number, self.stop)
         log.info("worker starts", worker=self.name, concurrency=self._settings.concurrency)
         chores = [
             asyncio.create_task(self._repeat(self._settings.heartbeat_seconds, self._recover)),
             asyncio.create_task(self._repeat(RETENTION, self._retain)),
         ]
         try:
-            await asyncio.gather(self._serve(runner, QUICK, 1), self._serve(runner, SOLVE, self._settings.concurrency))
+            await asyncio.gather(self._serve(QUICK, 1), self._serve(SOLVE, self._settings.concurrency))
         finally:
             for chore in chores:
                 chore.cancel()
             await asyncio.gather(*chores, return_exceptions=True)
         log.info("worker stopped", worker=self.name)
 
-    def stop(self, runner: Runner) -> None:
+    def stop(self) -> None:
         """Stop soon: no new jobs, running ones wait again."""
-        runner.stopping = True
+        self.runner.stopping = True
         self._stop.set()
 
-    async def _serve(self, runner: Runner, queue: str, concurrency: int) -> None:
+    async def _serve(self, queue: str, concurrency: int) -> None:
         """Fetch from one queue; open it anew whenever the database comes back."""
         while not self._stop.is_set():
             try:
-                await self._fetch(runner, queue, concurrency)
+                await self._fetch(queue, concurrency)
             except (OperationalError, PoolTimeout, ProcrastinateException, DBAPIError) as error:
                 log.warning("the queue is away", queue=queue, reason=type(error).__name__)
                 with contextlib.suppress(TimeoutError):
                     await asyncio.wait_for(self._stop.wait(), RESTART)
 
-    async def _fetch(self, runner: Runner, queue: str, concurrency: int) -> None:
+    async def _fetch(self, queue: str, concurrency: int) -> None:
         app = App(connector=PsycopgConnector(conninfo=self._database.url, min_size=1, max_size=3, timeout=10.0))
 
         @app.task(name=TASK, retry=_Again())
         async def run(job_id: str) -> None:
-            await runner.run(UUID(job_id))
+            await self.runner.run(UUID(job_id))
 
         async with app.open_async():
             fetching = asyncio.create_task(

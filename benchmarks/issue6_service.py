@@ -1,0 +1,56 @@
+"""Issue 6, line 1: starts of the service, kills at random, and a job that moves to another worker."""
+
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from statistics import median
+
+from registry import Row, measurement
+from service_kills import Service, demo_files, kill_at_random
+
+PORT = 18765
+KILLS, ANALYSES, INSPECTIONS = 200, 20, 80
+DEADLINE = 4 * 3600.0
+LATER_STARTS = 3
+
+
+@measurement(issue=6, line=1)
+def start_of_the_service() -> Iterator[Row]:
+    service = Service(PORT)
+    seconds: list[float] = []
+    for _ in range(1 + LATER_STARTS):
+        begin = time.perf_counter()
+        service.start()
+        _wait_until_ready()
+        seconds.append(time.perf_counter() - begin)
+        service.stop()
+    service.remove()
+    yield Row(quantity="start on an empty folder", value=seconds[0], limit="<= 15", unit="s", subject="gaitlab serve")
+    later = median(seconds[1:])
+    yield Row(quantity="later start, median of 3", value=later, limit="<= 5", unit="s", subject="gaitlab serve")
+
+
+@measurement(issue=6, line=1)
+def kills_at_random() -> Iterator[Row]:
+    report = kill_at_random(demo_files(), KILLS, (ANALYSES, INSPECTIONS), DEADLINE)
+    total = ANALYSES + INSPECTIONS
+    lost = total - report.statuses["succeeded"]
+    for kind, count in sorted(report.kills.items()):
+        yield Row(quantity=f"kill -9 of {kind}", value=count, limit="", unit="", subject=f"{total} jobs")
+    yield Row(quantity="kills", value=report.kills.total(), limit=">= 200", unit="", subject=f"{total} jobs")
+    yield Row(
+        quantity="analyses among the jobs", value=report.analyses, limit=">= 20", unit="", subject=f"{total} jobs"
+    )
+    for quantity, value in (("lost", lost), ("done twice", report.twice), ("damaged uploads", report.damaged)):
+        yield Row(quantity=quantity, value=value, limit="<= 0", unit="", subject=f"{total} jobs")
+    yield Row(quantity="time of all", value=report.seconds, limit="", unit="s", subject=f"{total} jobs")
+
+
+def _wait_until_ready() -> None:
+    while True:
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{PORT}/health/ready", timeout=5.0):
+                return
+        except (urllib.error.URLError, OSError):
+            time.sleep(0.05)

@@ -1,0 +1,233 @@
+"""A whole service whose processes are killed at random while it computes: nothing may be lost, nothing done twice."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from datetime import date
+from pathlib import Path
+
+import psutil
+from sqlalchemy import func, select
+from sqlalchemy.exc import DBAPIError
+from stored import open_folder
+
+from gaitlab.errors import StorageError
+from gaitlab.jobs.queue import submit
+from gaitlab.jobs.request import JobInput, JobRequest
+from gaitlab.storage.database import Database
+from gaitlab.storage.embedded import EmbeddedPostgres
+from gaitlab.storage.files import open_store
+from gaitlab.storage.models import (
+    FINAL,
+    GaitSession,
+    Job,
+    JobKind,
+    JobStatus,
+    Patient,
+    Recording,
+    RecordingKind,
+    Result,
+)
+from gaitlab.storage.references import refer
+from gaitlab.storage.settings import Settings
+
+VICTIMS = {
+    "web": "gaitlab.cli.web_process",
+    "worker": "gaitlab.cli.worker_process",
+    "computation": "gaitlab.jobs.computing_process",
+}
+SERVE = "from gaitlab.cli import main; main()"
+ATTEMPTS = 50
+"""Far more than the 3 of an installation: here every loss is the killer's fault, never the job's."""
+
+
+@dataclass
+class Report:
+    """What the kills did."""
+
+    kills: Counter = field(default_factory=Counter)
+    statuses: Counter = field(default_factory=Counter)
+    analyses: int = 0
+    results: int = 0
+    twice: int = 0
+    damaged: int = 0
+    seconds: float = 0.0
+
+
+class Service:
+    """`gaitlab serve` in a process, and a connection to its database."""
+
+    def __init__(self, port=0):
+        self.folder, self.port = open_folder(), port
+        self.data = self.folder / "data"
+        self.process = None
+        self.server = EmbeddedPostgres(self.data)
+        environment = {
+            "GAITLAB_ATTEMPTS": str(ATTEMPTS), "GAITLAB_HEARTBEAT_SECONDS": "1", "GAITLAB_STALLED_SECONDS": "4",
+            "GAITLAB_JOB_NICENESS": "0",
+        }  # fmt: skip
+        self.environment = os.environ | environment
+
+    def start(self):
+        """Start the service on its folder."""
+        words = ["serve", "--data-dir", str(self.data), "--port", str(self.port)]
+        with (self.folder / "log").open("ab") as log:
+            self.process = subprocess.Popen([sys.executable, "-c", SERVE, *words], env=self.environment, stderr=log)
+
+    def database(self):
+        """Wait for the database, and open it."""
+        while True:
+            try:
+                if self.server.pid() is None:
+                    raise StorageError("not yet")
+                database = Database.open(self.server.url)
+                database.check()
+                with database.sessions() as session:
+                    session.scalar(select(func.count()).select_from(Job))
+                return database
+            except (StorageError, DBAPIError, OSError):
+                time.sleep(0.2)
+
+    def victim(self, kind):
+        """A process to kill, or None."""
+        if kind == "postgres":
+            return self.server.pid()
+        family = psutil.Process(self.process.pid).children(recursive=True)
+        found = [each.pid for each in family if runs(each, VICTIMS[kind])]
+        return found[0] if found else None
+
+    def stop(self):
+        """End the service in order."""
+        self.process.send_signal(signal.SIGTERM)
+        self.process.wait(60)
+
+    def remove(self):
+        """Forget the folder."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def runs(process, module):
+    try:
+        return module in process.cmdline() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.Error:
+        return False
+
+
+def submit_jobs(database, store, files, analyses, inspections):
+    """Upload recordings and ask for jobs; returns the digests of what was acknowledged."""
+    digests = []
+    for number in range(analyses + inspections):
+        with database.transaction() as session:
+            patient = Patient(pseudonym=f"P{number:04d}")
+            session.add(patient)
+            session.flush()
+            visit = GaitSession(patient_id=patient.id, visited_on=date(2026, 11, 22))
+            session.add(visit)
+            session.flush()
+            inputs = []
+            for path in files if number < analyses else files[:1]:
+                stored = store.put_file(path)
+                refer(session, store, stored)
+                kind = RecordingKind.STATIC if path.stem == "static" else RecordingKind.WALK
+                row = Recording(session_id=visit.id, name=path.name, sha256=stored.sha256, size=stored.size, kind=kind)
+                session.add(row)
+                session.flush()
+                role = path.stem if path.stem == "static" else "walk"
+                inputs.append(
+                    JobInput(
+                        role=role if number < analyses else "recording",
+                        name=path.name,
+                        sha256=stored.sha256,
+                        source=row.id,
+                    )
+                )
+                digests.append(stored.sha256)
+            submit(
+                session,
+                JobRequest(
+                    kind=JobKind.ANALYSE if number < analyses else JobKind.INSPECT,
+                    inputs=tuple(inputs),
+                    patients=frozenset({patient.id}),
+                    session_id=visit.id,
+                    settings={"weights": False} if number < analyses else {},
+                ),
+            )
+    return digests
+
+
+def kill_at_random(files, kills, jobs, deadline, seed=0):
+    """Run the jobs while processes are killed.
+
+    Args:
+        files: Recordings of an analysis, the static trial first.
+        kills: How many kills.
+        jobs: Numbers of analyses and inspections.
+        deadline: Longest time for all of it [s].
+        seed: Of what is killed and when.
+    """
+    begin, choice, report = time.monotonic(), random.Random(seed), Report(analyses=jobs[0])
+    service = Service()
+    service.start()
+    try:
+        database = service.database()
+        store = open_store(Settings(data_dir=service.data))
+        digests = submit_jobs(database, store, files, *jobs)
+        while time.monotonic() - begin < deadline:
+            unfinished = count_unfinished(database)
+            if unfinished == 0 and report.kills.total() >= kills:
+                break
+            if report.kills.total() < kills:
+                pid = service.victim(kind := choice.choice([*VICTIMS, "postgres"]))
+                if pid is not None:
+                    kill(pid)
+                    report.kills[kind] += 1
+            time.sleep(choice.uniform(0.5, 4.0))
+        summarise(database, store, digests, report)
+        database.close()
+    finally:
+        service.stop()
+        service.remove()
+    report.seconds = time.monotonic() - begin
+    return report
+
+
+def kill(pid):
+    try:
+        os.kill(pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+
+
+def count_unfinished(database):
+    try:
+        with database.sessions() as session:
+            return session.scalar(select(func.count()).select_from(Job).where(Job.status.not_in(FINAL)))
+    except DBAPIError:
+        return None
+
+
+def summarise(database, store, digests, report):
+    """Count jobs, results and files at the end."""
+    with database.sessions() as session:
+        report.statuses.update(status.value for status in session.scalars(select(Job.status)))
+        report.results = session.scalar(select(func.count()).select_from(Result))
+        report.twice = report.results - session.scalar(select(func.count(Result.job_id.distinct())))
+        done = session.scalar(select(func.count()).select_from(Job).where(Job.status == JobStatus.SUCCEEDED))
+    report.twice += abs(report.results - done)
+    for digest in set(digests):
+        try:
+            store.read(digest)
+        except StorageError:
+            report.damaged += 1
+
+
+def demo_files():
+    """Recordings of the demo child: static trial and a walk."""
+    folder = next((Path(__file__).parent.parent / "data").glob("**/demo_cp_child"))
+    return [folder / "static.c3d", folder / "walk1.c3d"]
