@@ -39,9 +39,7 @@ def kills_at_random() -> Iterator[Row]:
     for kind, count in sorted(report.kills.items()):
         yield Row(quantity=f"kill -9 of {kind}", value=count, limit="", unit="", subject=f"{total} jobs")
     yield Row(quantity="kills", value=report.kills.total(), limit=">= 200", unit="", subject=f"{total} jobs")
-    yield Row(
-        quantity="analyses among the jobs", value=report.analyses, limit=">= 20", unit="", subject=f"{total} jobs"
-    )
+    yield Row(quantity="analyses among them", value=report.analyses, limit=">= 20", unit="", subject=f"{total} jobs")
     for quantity, value in (("lost", lost), ("done twice", report.twice), ("damaged uploads", report.damaged)):
         yield Row(quantity=quantity, value=value, limit="<= 0", unit="", subject=f"{total} jobs")
     yield Row(quantity="time of all", value=report.seconds, limit="", unit="s", subject=f"{total} jobs")
