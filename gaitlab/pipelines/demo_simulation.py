@@ -21,6 +21,7 @@ from ..errors import NotConverged
 from ..multibody.dynamics import contact_positions, contact_velocities, inverse_dynamics, layout_of, parameter_vector
 from ..multibody.subject import SubjectModel
 from ..transcription.hermite import GAUSS_POINTS
+from ..transcription.mechanical_problem import MechanicalProblem
 from ..walking.model import POINTS, ROOT
 from .demo_optimum import OptimalArc
 from .demo_recording import PLATE_RATE
@@ -88,17 +89,18 @@ class ForwardDynamics:
 
 def simulate_arc(dynamics: ForwardDynamics, arc: OptimalArc) -> SimulatedArc:
     """Integrate every interval of an arc from its node under its torques."""
-    n_q, torques, nodes = dynamics.n_q, _torques(arc), arc.states
+    n_q, torques, nodes = dynamics.n_q, torques_at_nodes(arc.problem, arc.solution.w), arc.states
     before, node, defect = set[int](), 0, 0.0
     held = np.zeros(3 * len(POINTS))
+    times = np.arange(round(INTERVAL * PLATE_RATE) + 1) / PLATE_RATE
     q, forces = list[np.ndarray](), list[np.ndarray]()
     for stage in arc.stages:
         landed = [i for i in stage.active if i not in before]
         held[landed] = dynamics.places(nodes[node, :n_q])[landed]
         before = set(stage.active)
-        contact = _Contact(active=list(stage.active), held=held.copy())
+        contact = Contact(active=list(stage.active), held=held.copy())
         for _ in range(stage.n_intervals):
-            path, carried = _integrate(dynamics, contact, nodes[node], torques[node])
+            path, carried = integrate(dynamics, contact, nodes[node], torques[node], times)
             node += 1
             gap = nodes[node, :n_q] - path[-1, :n_q]
             defect = max(defect, float(np.max(np.abs(gap))))
@@ -108,7 +110,7 @@ def simulate_arc(dynamics: ForwardDynamics, arc: OptimalArc) -> SimulatedArc:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Contact:
+class Contact:
     """Contact coordinates that stay, and where."""
 
     active: list[int]
@@ -116,28 +118,42 @@ class _Contact:
     """[m], shape (12,)."""
 
 
-def _torques(arc: OptimalArc) -> np.ndarray:
-    """Joint torques at the beginning and the end of each interval, on the line through its Gauss points, (N, 2, n)."""
-    n_q = arc.problem.shared.layout.n_q
-    at_points = arc.problem.outputs(arc.solution.w)[:, ROOT:n_q].reshape(-1, 2, n_q - ROOT)
+def torques_at_nodes(problem: MechanicalProblem, w: np.ndarray) -> np.ndarray:
+    """Joint torques [N*m] of w (n_w,) at both ends of an interval, on the line through its Gauss points, (N, 2, n)."""
+    n_q = problem.shared.layout.n_q
+    at_points = problem.outputs(w)[:, ROOT:n_q].reshape(-1, 2, n_q - ROOT)
     slope = (at_points[:, 1] - at_points[:, 0]) / (GAUSS_POINTS[1] - GAUSS_POINTS[0])
     start = at_points[:, 0] - GAUSS_POINTS[0] * slope
     return np.stack([start, start + slope], axis=1)
 
 
-def _integrate(
-    dynamics: ForwardDynamics, contact: _Contact, state: np.ndarray, torques: np.ndarray
+def integrate(
+    dynamics: ForwardDynamics, contact: Contact, state: np.ndarray, torques: np.ndarray, times: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """States over one interval, shape (n + 1, 2 n_q), and contact forces but at its end, shape (n, 12)."""
-    times = np.arange(round(INTERVAL * PLATE_RATE) + 1) / PLATE_RATE
+    """Motion from a state (2 n_q,) under joint torques that are linear in time, given at the first and the last time.
+
+    Args:
+        dynamics: Of the body.
+        contact: What stays where it is.
+        state: (q, v) at the first time [m, rad, 1/s], shape (2 n_q,).
+        torques: At the first and the last time [N*m], shape (2, n_q - 6).
+        times: From zero on [s], shape (n + 1,).
+
+    Returns:
+        States, shape (n + 1, 2 n_q), and contact forces [N] at all times but the last, shape (n, 12).
+
+    Raises:
+        NotConverged: The method cannot keep its tolerance.
+    """
+    duration = float(times[-1])
 
     def drive(t: float) -> np.ndarray:
-        return torques[0] + t / INTERVAL * (torques[1] - torques[0])
+        return torques[0] + t / duration * (torques[1] - torques[0])
 
     def rate(t: float, x: np.ndarray) -> np.ndarray:
         return np.concatenate([x[dynamics.n_q :], dynamics(x, drive(t), contact.active, contact.held)[0]])
 
-    path = solve_ivp(rate, (0.0, INTERVAL), state, "DOP853", times, rtol=TOLERANCE, atol=TOLERANCE)
+    path = solve_ivp(rate, (0.0, duration), state, "DOP853", times, rtol=TOLERANCE, atol=TOLERANCE)
     if not path.success:
         raise NotConverged(f"a demo arc could not be integrated: {path.message}")
     states = path.y.T

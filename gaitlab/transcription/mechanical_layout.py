@@ -43,6 +43,8 @@ class MechanicalLayout:
     """Coordinates q_i with limits at the nodes where they are not given."""
     redundant: frozenset[ContactRow] = frozenset()
     """Contact conditions that follow from the others and are left out (see `contact_rank`)."""
+    touching_end: tuple[int, ...] = ()
+    """Contact coordinates that are zero at the last node (heights of points that land there)."""
 
     def __post_init__(self) -> None:
         if not self.stages:
@@ -100,6 +102,8 @@ class MechanicalLayout:
                 if not self._v_given(k + 1):
                     rows += [ContactRow(component=self.n_f + i, node=k + 1) for i in stage.active]
             node += stage.n_intervals
+        if not self._q_given(node):
+            rows += [ContactRow(component=i, node=node) for i in self.touching_end]
         return [row for row in rows if row not in self.redundant]
 
     def clearances(self) -> list[ContactRow]:
@@ -108,7 +112,7 @@ class MechanicalLayout:
         node = 0
         for index, stage in enumerate(self.stages):
             end = node + stage.n_intervals
-            lands = set(self.stages[index + 1].grounded) if index + 1 < len(self.stages) else set[int]()
+            lands = set(self.stages[index + 1].grounded if index + 1 < len(self.stages) else self.touching_end)
             for k in range(node + 1, end + 1):
                 free = [i for i in stage.clear if not (k == end and i in lands) and not self._q_given(k)]
                 rows += [ContactRow(component=i, node=k) for i in free]

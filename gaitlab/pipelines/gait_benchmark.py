@@ -1,0 +1,119 @@
+"""The inverse problems of the thesis's gait models at full size: solved, certified, and compared with the truth."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..bilevel.implicit_gauss_newton import ImplicitGaussNewton
+from ..bilevel.result import WeightEstimate
+from ..errors import NotConverged
+from ..nlp.sparse_solution import Status
+from ..walking.criteria import THESIS
+from ..walking.point_foot_gait import GaitLevel, GaitOptimum
+from .gait_cases import GaitCase
+
+CERTIFICATE = 1e-6
+"""Largest first-order residual of a certified solution."""
+
+COVERAGE = 0.95
+
+
+@dataclass(frozen=True, kw_only=True)
+class GaitRun:
+    """One inverse problem and its solution."""
+
+    case: GaitCase
+    noise: float
+    """In units of 1 degree and 10 mm."""
+    seed: int
+    level: GaitLevel
+    estimate: WeightEstimate
+    optimum: GaitOptimum
+    seconds: float
+    """From measurements to weights, processor time of one core [s]."""
+
+    @property
+    def certified(self) -> bool:
+        """First-order conditions to 1e-6, a minimum to second order in every stage, a converged upper level."""
+        return self.optimum.solution.is_optimal(CERTIFICATE) and self.optimum.is_minimum() and self.estimate.converged
+
+    @property
+    def error(self) -> float:
+        """Largest difference of a normalised weight from the truth."""
+        return float(np.max(np.abs(self.estimate.theta - self.case.weights)))
+
+    @property
+    def objective(self) -> float:
+        """Half the squared differences from the measurements as in (15.2), all standard deviations one."""
+        n_q = self.level.n_q
+        last = len(self.optimum.states) - 1
+        total = 0.0
+        for k, (x, q) in enumerate(zip(self.optimum.states, self.level.measured.q, strict=True)):
+            gap = x[:, :n_q] - q
+            total += 0.5 * float(np.sum((gap if k == last else gap[:-1]) ** 2))
+        return total
+
+    @property
+    def thesis_weights(self) -> np.ndarray:
+        """The estimate in the thesis's scaling, sum one, shape (4,)."""
+        gamma = self.estimate.theta / self.case.gait.normalisers / self.case.thesis.scalings
+        return gamma / gamma.sum()
+
+    @property
+    def n_variables(self) -> int:
+        """Variables of the lower level."""
+        return sum(structure.n_w for structure in self.level.structures)
+
+    @property
+    def n_constraints(self) -> int:
+        """Equations of the lower level."""
+        return sum(structure.sparse.n_g for structure in self.level.structures)
+
+    @property
+    def n_pairs(self) -> int:
+        """Inequalities of the lower level, each with its multiplier."""
+        return sum(structure.sparse.n_c for structure in self.level.structures)
+
+    def covers_truth(self) -> bool:
+        """Whether the 95 % confidence ellipsoid of the weights holds the truth."""
+        gap = self.estimate.theta - self.case.weights
+        values, vectors = np.linalg.eigh(self.estimate.covariance)
+        # The sum of the weights is fixed: one direction has no variance.
+        told = values > 1e-12 * values[-1]
+        distance = float(np.sum((vectors[:, told].T @ gap) ** 2 / values[told]))
+        return distance <= _chi_square(int(told.sum()))
+
+
+def _chi_square(degrees: int) -> float:
+    """95 % quantile."""
+    return {1: 3.841459, 2: 5.991465, 3: 7.814728}[degrees]
+
+
+def solve_case(
+    case: GaitCase,
+    noise: float = 0.0,
+    seed: int = 0,
+    start: np.ndarray | None = None,
+    progress: Callable[[int, float], None] | None = None,
+) -> GaitRun:
+    """Weights from simulated measurements, from start weights (4,), equal ones by default.
+
+    Raises:
+        NotConverged: The lower level is not solved for the start weights.
+    """
+    theta = np.full(len(THESIS), 1.0 / len(THESIS)) if start is None else start
+    measured = case.measured(noise, seed)
+    began = time.process_time()
+    level = GaitLevel(case.gait, measured)
+    response = level.from_measurements(theta)
+    if response.solution.status is not Status.SOLVED:
+        raise NotConverged(f"{case.thesis.name}: no optimal gait for the start weights: {response.solution.status}")
+    estimate = ImplicitGaussNewton().solve(level, theta, response, progress)
+    seconds = time.process_time() - began
+    problems = level.problems(estimate.theta)
+    optimum = GaitOptimum(level, problems, level.split(estimate.response.solution))
+    return GaitRun(
+        case=case, noise=noise, seed=seed, level=level, estimate=estimate, optimum=optimum, seconds=seconds
+    )  # fmt: skip
