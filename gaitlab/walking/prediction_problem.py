@@ -95,7 +95,7 @@ class PredictionProblem:
         return LimitedProblem(inner, self.limited, bounds)
 
     def mechanical(self, situation: Situation, log_time: float, pull: np.ndarray | None = None) -> MechanicalProblem:
-        """The same without limits of torques."""
+        """The same without limits of torques; `pull` of shape (n_periodic,)."""
         stretch = float(np.exp(log_time))
         length = situation.task.length(self.duration * stretch)
         scale = self.length / length

@@ -53,10 +53,15 @@ class _TimeDerivatives(NamedTuple):
     lagrangian: float
     curvature: float
     gradient: np.ndarray
+    """Of the Lagrangian in w, shape (n_w,)."""
     equalities: np.ndarray
+    """Of g, shape (n_g,)."""
     inequalities: np.ndarray
+    """Of c, shape (n_c,)."""
     gap: np.ndarray
+    """Wanted differences between the ends, shape (n_periodic,)."""
     gap_curvature: np.ndarray
+    """Their second derivative, shape (n_periodic,)."""
 
 
 @dataclass(frozen=True, eq=False)
