@@ -44,20 +44,21 @@ def ocp(
         console.print(f"{each.title} ...", style="dim")
         comparisons.append(compare(each, method or list(METHODS)))
     forward, inverse = forward_rows(comparisons), inverse_rows(comparisons) + published_rows(comparisons)
-    console.print(_table("Optimal control", PRINTED_FORWARD, chosen(FORWARD_COLUMNS, forward, PRINTED_FORWARD)))
+    console.print(as_table("Optimal control", PRINTED_FORWARD, chosen(FORWARD_COLUMNS, forward, PRINTED_FORWARD)))
     _remarks(console, comparisons)
     by_problem = sorted(inverse, key=lambda row: row[0])
-    console.print(_table("Inverse problems", PRINTED_INVERSE, chosen(INVERSE_COLUMNS, by_problem, PRINTED_INVERSE)))
+    console.print(as_table("Inverse problems", PRINTED_INVERSE, chosen(INVERSE_COLUMNS, by_problem, PRINTED_INVERSE)))
     _failures(console, comparisons)
     files = {"optimal_control.csv": as_csv(FORWARD_COLUMNS, forward), "inverse.csv": as_csv(INVERSE_COLUMNS, inverse)}
     for comparison in comparisons:
         files |= _figures(comparison)
-    _write(files, out)
+    write_files(files, out)
     console.print(f"written to {out}: {', '.join(files)}")
     _complain(comparisons)
 
 
-def _table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+def as_table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """A table for the screen; long cells are folded."""
     table = Table(title=title, show_lines=True)
     for column in columns:
         table.add_column(column, overflow="fold")
@@ -91,7 +92,8 @@ def _figures(comparison: Comparison) -> dict[str, str]:
     return files
 
 
-def _write(files: dict[str, str], folder: Path) -> None:
+def write_files(files: dict[str, str], folder: Path) -> None:
+    """Write texts into a folder, made if absent; raises `errors.OutputError` where that is impossible."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in files.items():

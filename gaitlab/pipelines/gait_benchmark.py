@@ -117,3 +117,43 @@ def solve_case(
     return GaitRun(
         case=case, noise=noise, seed=seed, level=level, estimate=estimate, optimum=optimum, seconds=seconds
     )  # fmt: skip
+
+
+COLUMNS = ("quantity", "thesis", "ours", "truth")
+
+
+def rows(run: GaitRun) -> list[tuple[str, str, str, str]]:
+    """The table of one run under `COLUMNS`; what the thesis does not print is a dash."""
+    thesis, estimate = run.case.thesis, run.estimate
+    deviation = np.sqrt(np.diag(estimate.covariance))
+    grids = "/0/".join(str(n) for n in thesis.n_intervals)
+    n_nodes = sum(len(x) for x in run.optimum.states)
+    table = [
+        ("intervals per stage", grids, grids, ""),
+        ("measured values", f"{thesis.n_measured} x 24", f"{thesis.n_measured} x 24", ""),
+        ("variables", str(thesis.n_variables), f"{run.n_variables} (lower level, {n_nodes} nodes)", ""),
+        ("equations", "7243", str(run.n_constraints), ""),
+        ("complementary pairs", str(thesis.n_pairs), str(run.n_pairs), ""),
+        ("noise", "real data", f"{run.noise:g} deg, {10 * run.noise:g} mm, seed {run.seed}", ""),
+        ("objective (15.2)", f"{thesis.objective:.5g}", f"{run.objective:.5g}", ""),
+        (
+            "objective / measured values",
+            f"{thesis.objective / (24 * thesis.n_measured):.3g}",
+            f"{run.objective / (24 * thesis.n_measured):.3g}",
+            "",
+        ),
+    ]
+    for i, name in enumerate(THESIS):
+        ours = f"{estimate.theta[i]:.5f} +- {deviation[i]:.5f}"
+        table.append((f"weight of {name}, normalised", "-", ours, f"{run.case.weights[i]:.5f}"))
+    for i, name in enumerate(THESIS):
+        printed = f"{thesis.weights[i]:.5g}"
+        table.append((f"gamma_{i + 1} ({name})", printed, f"{run.thesis_weights[i]:.5g}", printed))
+    return [
+        *table,
+        ("iterations", str(thesis.iterations), f"{estimate.iterations} ({estimate.lower_iterations} lower)", ""),
+        ("seconds of one core", f"{thesis.seconds:.6g}", f"{run.seconds:.2f}", ""),
+        ("thesis's time / ours", "1", f"{thesis.seconds / run.seconds:.0f}", ""),
+        ("certified", "no", "yes" if run.certified else f"no: {estimate.reason}", ""),
+        ("largest torque [N*m]", "<= 500", f"{run.optimum.largest_torque():.0f}", ""),
+    ]

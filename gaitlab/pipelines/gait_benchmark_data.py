@@ -220,7 +220,8 @@ def _refined(gait: PointFootGait, optimum: GaitOptimum, weights: np.ndarray) -> 
     """The optimum on a grid twice as fine."""
     fine = gait.finer(2)
     parts = zip(optimum.states, fine.durations, fine.n_intervals, strict=True)
-    found = _level(fine, tuple(_between(x, duration, n) for x, duration, n in parts)).from_measurements(weights, (1.0, 0.0))
+    states = tuple(_between(x, duration, n) for x, duration, n in parts)
+    found = _level(fine, states).from_measurements(weights, (1.0, 0.0))
     if found.solution.status is not Status.SOLVED:
         raise NotConverged(f"{gait.name}: no optimal gait on the finer grid: {found.solution.status}")
     return found

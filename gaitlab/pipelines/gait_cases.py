@@ -111,7 +111,7 @@ class GaitCase:
     certificate: Mapping[str, float]
 
     def measured(self, noise: float, seed: int) -> MeasuredGait:
-        """Measurements with normal noise, in units of 1 degree and 10 mm; without noise they count as if it were one."""
+        """Measurements with normal noise in units of 1 degree and 10 mm; without any they weigh as if it were one."""
         n_q = self.gait.subject.n_q
         deviation = np.where(np.arange(n_q) < 3, NOISE_PLACE, NOISE_ANGLE)
         generator = np.random.default_rng(seed)

@@ -45,7 +45,7 @@ def time_courses(
         axes.set_xlabel("t / T")
     lines, labels = figure.axes[0].get_legend_handles_labels()
     figure.legend(lines, labels, loc="outside upper center", ncols=4, fontsize="x-small")
-    return _svg(figure)
+    return as_svg(figure)
 
 
 def path_in_plane(optimum: Trajectory, estimates: Mapping[str, Trajectory], title: str) -> str:
@@ -60,7 +60,7 @@ def path_in_plane(optimum: Trajectory, estimates: Mapping[str, Trajectory], titl
     axes.set_aspect("equal")
     axes.set_title(title)
     axes.legend(fontsize="small", loc="lower right")
-    return _svg(figure)
+    return as_svg(figure)
 
 
 def arm_postures(optimum: Trajectory, title: str) -> str:
@@ -78,7 +78,7 @@ def arm_postures(optimum: Trajectory, title: str) -> str:
     axes.set_xlabel("[m]")
     axes.set_title(title)
     axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    return _svg(figure)
+    return as_svg(figure)
 
 
 def _colours(n: int) -> list[str]:
@@ -100,7 +100,8 @@ def _circles(axes: Axes, i: int, n_x: int, measured: Sequence[Measurement]) -> N
             axes.plot(each.times, each.values[:, column], "o", color=MEASURED, markersize=3, fillstyle="none")
 
 
-def _svg(figure: Figure) -> str:
+def as_svg(figure: Figure) -> str:
+    """The figure as SVG text; the same input gives the same bytes."""
     text = io.StringIO()
     with rc_context(_SVG):
         FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
