@@ -160,5 +160,5 @@ def test_what_is_forward_is_a_choice_and_printed(analysed):
     along, text = analysed("--along-walk")
     assert "measured against the walking direction." in text and along["settings"]["forward"] == "heading"
     left = [np.array(result["kinematics"]["foot_progression"]["left"]["mean"]) for result in (axis, along)]
-    turned = left[0] - left[1]  # by one angle throughout, the other way on the other foot
-    assert 0.05 < abs(turned.mean()) < 5.0 and turned.std() < 0.1
+    turned = left[0] - left[1]  # this child walks 0.4 deg off the axis
+    assert 0.1 < abs(turned.mean()) < 1.0 and turned.std() < abs(turned.mean())
