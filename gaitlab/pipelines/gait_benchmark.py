@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,7 +17,11 @@ from .gait_cases import GaitCase
 CERTIFICATE = 1e-6
 """Largest first-order residual of a certified solution."""
 
-COVERAGE = 0.95
+DRAWN = 0.1
+"""Weight of half the mean squared residual in the lower level while the search begins."""
+APPROACH = (100.0, 1.0, DRAWN)
+"""Such weights on the way from the measurements."""
+FIRST_STEPS = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,23 +104,39 @@ def solve_case(
 ) -> GaitRun:
     """Weights from simulated measurements, from start weights (4,), equal ones by default.
 
+    The search begins with a lower level that is drawn to the measurements, and goes on without.
+
     Raises:
-        NotConverged: The lower level is not solved for the start weights.
+        NotConverged: The lower level is not solved for the first weights.
     """
     theta = np.full(len(THESIS), 1.0 / len(THESIS)) if start is None else start
     measured = case.measured(noise, seed)
     began = time.process_time()
     level = GaitLevel(case.gait, measured)
-    response = level.from_measurements(theta)
-    if response.solution.status is not Status.SOLVED:
-        raise NotConverged(f"{case.thesis.name}: no optimal gait for the start weights: {response.solution.status}")
-    estimate = ImplicitGaussNewton().solve(level, theta, response, progress)
+    estimate = _search(level, theta, progress)
     seconds = time.process_time() - began
     problems = level.problems(estimate.theta)
     optimum = GaitOptimum(level, problems, level.split(estimate.response.solution))
     return GaitRun(
         case=case, noise=noise, seed=seed, level=level, estimate=estimate, optimum=optimum, seconds=seconds
     )  # fmt: skip
+
+
+def _search(level: GaitLevel, theta: np.ndarray, progress: Callable[[int, float], None] | None) -> WeightEstimate:
+    drawn = level.drawn(DRAWN)
+    response = drawn.from_measurements(theta, APPROACH)
+    first = ImplicitGaussNewton(max_iter=FIRST_STEPS).solve(drawn, theta, _solved(level, response), progress)
+    free = level.respond(first.theta, first.response.solution)
+    last = ImplicitGaussNewton().solve(level, first.theta, _solved(level, free), progress)
+    lower = first.lower_iterations + free.solution.iterations + last.lower_iterations
+    return replace(last, iterations=first.iterations + last.iterations, lower_iterations=lower)
+
+
+def _solved(level: GaitLevel, response: GaitOptimum) -> GaitOptimum:
+    status = response.solution.status
+    if status is not Status.SOLVED:
+        raise NotConverged(f"{level.gait.name}: no optimal gait for the first weights: {status}")
+    return response
 
 
 COLUMNS = ("quantity", "thesis", "ours", "truth")

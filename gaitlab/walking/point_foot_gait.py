@@ -13,6 +13,7 @@ its feet by several radians. As states are given, the stages share only the weig
 """
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -198,6 +199,7 @@ class GaitLevel:
         first: tuple[np.ndarray, ...] | None = None,
     ) -> None:
         """`first` are states to start from, per stage (N_k + 1, 2 n_q); smoothed measurements by default."""
+        self.tracking = 0.0
         self.gait, self.measured, self.settings = gait, measured, settings or GaitLevelSettings()
         self.indices = [list(ALL).index(name) for name in THESIS]
         self.n_q = gait.subject.n_q
@@ -220,10 +222,20 @@ class GaitLevel:
         layout = MechanicalLayout((self.gait.stages[k],), self.n_q, N_FORCES, ROOT, boundary, ANGLES)
         return MechanicalStructure(without_redundant_contacts(layout, functions, self.p, self.first[k]), functions)
 
-    def problems(self, theta: np.ndarray, tracking: float = 0.0) -> tuple[MechanicalProblem, ...]:
+    def drawn(self, tracking: float) -> "GaitLevel":
+        """The same level with half the mean squared residual, times a weight, among its criteria.
+
+        Drawn to the measurements, optima for wrong weights stay near them: the search begins here.
+        """
+        level = copy(self)
+        level.tracking = tracking
+        return level
+
+    def problems(self, theta: np.ndarray, tracking: float | None = None) -> tuple[MechanicalProblem, ...]:
         """The stages for weights theta, shape (n_theta,), and a weight of half the mean squared residual."""
+        weight = self.tracking if tracking is None else tracking
         return tuple(
-            MechanicalProblem(structure, self._data(k, theta, tracking)) for k, structure in enumerate(self.structures)
+            MechanicalProblem(structure, self._data(k, theta, weight)) for k, structure in enumerate(self.structures)
         )
 
     def _data(self, k: int, theta: np.ndarray, tracking: float) -> MechanicalData:

@@ -1,0 +1,105 @@
+"""Issue 4: the thesis's gait models at full size: time, linear cost, weights recovered, coverage, random starts."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from registry import Row, measurement
+from scipy.interpolate import CubicHermiteSpline
+
+from gaitlab.errors import NotConverged
+from gaitlab.pipelines.gait_benchmark import GaitRun, solve_case
+from gaitlab.pipelines.gait_cases import CASES, GaitCase, load_case
+from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait, first_guess
+
+SEEDS = 50
+SIZES = (31, 62, 124, 248, 496, 992)
+LIMITS = {"cp-child": "<= 10", "able-bodied-child": "<= 20"}
+COVERED = 43
+"""Fewest of 50 intervals of 95 % that a binomial distribution allows with 99 % (two-sided; the most is 50)."""
+
+
+@measurement(issue=4, line=1)
+def thesis_gait_seconds() -> Iterator[Row]:
+    for name in CASES:
+        solve_case(load_case(name), 1.0, 0)
+        run = solve_case(load_case(name), 1.0, 0)
+        yield Row(quantity="warm, one core", value=run.seconds, limit=LIMITS[name], unit="s", subject=name)
+        speed_up = run.case.thesis.seconds / run.seconds
+        yield Row(quantity="thesis's time over ours", value=speed_up, limit="", unit="", subject=name)
+
+
+@measurement(issue=4, line=3)
+def thesis_gait_linear_time() -> Iterator[Row]:
+    seconds = [_iteration(load_case("cp-child"), n) for n in SIZES]
+    for n, value in zip(SIZES, seconds, strict=True):
+        yield Row(quantity=f"one iteration, {n} intervals", value=value, limit="", unit="s", subject="cp-child")
+    exponent = float(np.polyfit(np.log(SIZES), np.log(seconds), 1)[0])
+    yield Row(quantity="exponent", value=exponent, limit="<= 1.1", unit="", subject="cp-child")
+
+
+@measurement(issue=4, line=4)
+def thesis_gait_without_noise() -> Iterator[Row]:
+    for name in CASES:
+        run = solve_case(load_case(name))
+        yield Row(quantity="largest error of a weight", value=run.error, limit="<= 0.01", unit="", subject=name)
+        yield Row(quantity="not certified", value=float(not run.certified), limit="<= 0", unit="", subject=name)
+
+
+@measurement(issue=4, line=4)
+def thesis_gait_coverage() -> Iterator[Row]:
+    for name in CASES:
+        case = load_case(name)
+        runs = [run for seed in range(SEEDS) if (run := _tried(case, 1.0, seed)) is not None and run.certified]
+        covered = sum(run.covers_truth() for run in runs)
+        deviations = [float(np.sqrt(np.diag(run.estimate.covariance)).max()) for run in runs]
+        yield Row(quantity="95 % ellipsoids", value=covered, limit=f">= {COVERED}", unit="of 50", subject=name)
+        yield Row(quantity="median sd", value=float(np.median(deviations)), limit="<= 0.05", unit="", subject=name)
+
+
+@measurement(issue=4, line=4)
+def thesis_gait_random_starts() -> Iterator[Row]:
+    for name in CASES:
+        case, certified = load_case(name), 0
+        for seed in range(SEEDS):
+            generator = np.random.default_rng(1000 + seed)
+            start = generator.dirichlet(np.ones(4))
+            run = _tried(case, 2.0 * generator.random(), seed, start)
+            certified += run is not None and run.certified and run.estimate.rms < 1.1
+        yield Row(quantity="certified, sigma to 2 deg", value=certified, limit=">= 48", unit="of 50", subject=name)
+
+
+def _tried(case: GaitCase, noise: float, seed: int, start: np.ndarray | None = None) -> GaitRun | None:
+    try:
+        return solve_case(case, noise, seed, start)
+    except NotConverged:
+        return None
+
+
+def _iteration(case: GaitCase, n: int) -> float:
+    """Median processor time of an iteration of the lower level on a grid of n intervals [s]."""
+    level = _regridded(case, n)
+    start = level.at_start(np.full(4, 0.25))
+    seconds = list[float]()
+    for _ in range(3):
+        began = time.process_time()
+        for problem, x in zip(level.problems(np.full(4, 0.25)), start.solutions, strict=True):
+            replace(level.settings.solver, mu_initial=1e-2, max_iter=2).solve(problem, x.w)
+        seconds.append((time.process_time() - began) / 3)
+    return float(np.median(seconds))
+
+
+def _regridded(case: GaitCase, n: int) -> GaitLevel:
+    """The smoothed measurements on another grid, stages in their proportion."""
+    shares = np.array(case.gait.n_intervals) / sum(case.gait.n_intervals)
+    sizes = [int(k) for k in np.round(shares * n)]
+    sizes[1] += n - sum(sizes)
+    n_q, states = case.gait.subject.n_q, list[np.ndarray]()
+    for x, duration, k in zip(first_guess(case.gait, case.measured(0.0, 0)), case.gait.durations, sizes, strict=True):
+        spline = CubicHermiteSpline(np.linspace(0.0, duration, len(x)), x[:, :n_q], x[:, n_q:])
+        times = np.linspace(0.0, duration, k + 1)
+        states.append(np.hstack([spline(times), spline(times, 1)]))
+    gait = replace(case.gait, n_intervals=(sizes[0], sizes[1], sizes[2]))
+    measured = MeasuredGait(q=tuple(x[:, :n_q] for x in states), deviation=case.measured(1.0, 0).deviation)
+    return GaitLevel(gait, measured, first=tuple(states))
