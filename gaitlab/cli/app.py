@@ -15,8 +15,8 @@ from .ending import run_app
 from .export import export_results
 from .inspect import inspect
 from .norms import norms
-from .predict import predict
 from .openapi import openapi
+from .predict import predict
 from .report import report
 from .schema import schema
 from .serve import SERVER_COMMANDS
