@@ -4,7 +4,7 @@ from functools import lru_cache
 
 from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.bundled import demo_folder
-from gaitlab.pipelines.model import unsmoothed_motion
+from gaitlab.pipelines.model import single_frames
 from gaitlab.pipelines.options import AnalysisOptions
 from gaitlab.pipelines.weights import WeightsRequest, usable_strides
 
@@ -23,7 +23,7 @@ def request_of(trial, landing="soft"):
         events=trial.events,
         subject=trial.subject,
         q=trial.motion.q,
-        unsmoothed=unsmoothed_motion(trial.subject, trial.recording, trial.kinematics.heading, trial.motion),
+        frames=single_frames(trial.subject, trial.recording, trial.kinematics.heading, trial.motion),
         heading=trial.kinematics.heading,
         criteria=AnalysisOptions().criteria,
         seed=0,
@@ -33,6 +33,11 @@ def request_of(trial, landing="soft"):
 
 def first_stride(trial, landing="soft"):
     return usable_strides(request_of(trial, landing))[0][0][1]
+
+
+def demo_request(child):
+    """What the pipeline would ask of the weights of the noise-free demo walk, from its C3D file."""
+    return request_of(_trial(child))
 
 
 def demo_stride(child="demo_cp_child", landing="soft"):

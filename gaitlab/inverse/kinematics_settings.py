@@ -28,6 +28,9 @@ class InverseKinematicsSettings:
 
     cut_off: float = 8.0
     """Of the smoothing [Hz]; numerics.md used 8 Hz on the markers. 0 switches smoothing off."""
+    agility: float | None = None
+    """Standard deviation of a marker's coordinate [m] by that of the accelerations [1/s^2 or m/s^2]: what it is for a
+    smoothing that knows both, in place of `cut_off`. Coordinates that markers hardly see are smoothed more."""
     marker_weights: Mapping[str, float] = field(default_factory=dict[str, float])
     """Marker name to weight, 1 where not named."""
     joint_centre_weight: float = 1.0

@@ -4,13 +4,20 @@ The normal equations are banded: 3 n_q wide with smoothness, n_q without. Their 
 while these shrink fast, as the matrix hardly changes near the minimum.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from gaitlab.inverse.kinematics_settings import InverseKinematicsSettings
-from gaitlab.inverse.marker_moments import MarkerMoments, Slope, gauss_newton_matrix, marker_slope
+from gaitlab.inverse.marker_moments import (
+    MarkerMoments,
+    Slope,
+    gauss_newton_matrix,
+    marker_moments,
+    marker_slope,
+)
 from gaitlab.multibody.subject import SubjectModel
 
 SHRINKING = 0.7
@@ -75,7 +82,9 @@ def _penalties(problem: FitProblem, matrix: np.ndarray) -> _Penalties:
     stiffness = np.maximum(stiffness, 1e-6 * stiffness.max())
     smoothness = np.zeros_like(stiffness)
     settings = problem.settings
-    if settings.cut_off > 0:
+    if settings.agility is not None:
+        smoothness[:] = (settings.agility * problem.rate**2) ** 2
+    elif settings.cut_off > 0:
         smoothness = stiffness * (problem.rate / (2 * np.pi * settings.cut_off)) ** 4
     lower, upper = settings.limits(problem.subject)
     prior = np.full_like(stiffness, settings.prior_lever**2)
@@ -88,6 +97,22 @@ def _penalties(problem: FitProblem, matrix: np.ndarray) -> _Penalties:
         prior=prior,
         start=problem.start,
     )
+
+
+def marker_information(subject: SubjectModel, markers: Mapping[str, np.ndarray], q: np.ndarray) -> np.ndarray:
+    """What the markers of each frame tell of the coordinates: sum of J'J over its markers, shape (n, n_q, n_q).
+
+    Divided by the variance of a marker's coordinate [m^2] it is the inverse covariance of the coordinates that fit the
+    markers best. J is a marker's derivative in the coordinates [m/m, m/rad].
+
+    Args:
+        subject: Model with markers.
+        markers: Name to positions in the gait frame [m], shapes (n, 3), NaN where missing; unknown names are ignored.
+        q: Coordinates [m, rad], shape (n, n_q).
+    """
+    known = {name: markers[name] for name in subject.markers if name in markers}
+    moments = marker_moments(subject, dict(subject.markers), known, {})
+    return gauss_newton_matrix(subject, moments, marker_slope(subject, moments, q))
 
 
 def minimise(problem: FitProblem) -> MarkerFit:

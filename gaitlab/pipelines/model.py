@@ -1,6 +1,7 @@
 """From the direct conventional gait model to the person's multibody model and its motion."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,13 +9,19 @@ from ..errors import InvalidSubject
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.kinematics import InverseKinematics, solve_inverse_kinematics
 from ..inverse.kinematics_settings import InverseKinematicsSettings
+from ..inverse.marker_fit import marker_information
 from ..mocap.recording import Recording
 from ..multibody.kinematics import coordinates_from_poses
 from ..multibody.scaling import MeasuredBody, SubjectSettings, build_subject, segment_poses
 from ..multibody.subject import SubjectModel
+from ..walking.joint_search import MeasuredFrames
 from .gait_frame import lab_to_gait, rotation_gait_to_lab
 
 UNSMOOTHED = InverseKinematicsSettings(cut_off=0.0, prior_lever=0.002, tolerance=1e-6)
+LEAST_NOISE = 2e-5
+"""Of a marker's coordinate [m]: what rounding leaves."""
+ACCELERATION = 50.0
+"""Of the coordinates [rad/s^2], order of magnitude."""
 SEGMENTS = ("pelvis", *(f"{side}_{kind}" for side in ("right", "left") for kind in ("thigh", "shank", "foot")))
 
 
@@ -48,15 +55,33 @@ def whole_model_motion(
     )
 
 
-def unsmoothed_motion(
+def single_frames(
     subject: SubjectModel, recording: Recording, heading: float, motion: InverseKinematics
-) -> np.ndarray:
-    """Coordinates [m, rad] that the markers of each frame alone tell, shape (n_frames, n_q), NaN where not known.
+) -> MeasuredFrames:
+    """Coordinates that the markers of each frame alone tell, for estimates that want white noise.
 
-    For estimates that want white noise; from the smoothed motion, which tells which turn of an angle is meant.
+    From the smoothed motion, which tells which turn of an angle is meant.
     """
     markers = {name: lab_to_gait(positions, heading) for name, positions in recording.markers.items()}
-    return solve_inverse_kinematics(subject, markers, recording.rate, UNSMOOTHED, initial=motion.q).q
+    alone = solve_inverse_kinematics(subject, markers, recording.rate, UNSMOOTHED, initial=motion.q)
+    noise = max(marker_noise(alone, subject.n_q), LEAST_NOISE)
+    smoothing = replace(UNSMOOTHED, agility=noise / ACCELERATION)
+    smoothed = solve_inverse_kinematics(subject, markers, recording.rate, smoothing, initial=motion.q)
+    information = marker_information(subject, markers, np.where(np.isfinite(alone.q), alone.q, 0.0))
+    return MeasuredFrames(
+        times=np.arange(len(alone.q)) / recording.rate,
+        q=alone.q,
+        little_smoothed=smoothed.q,
+        information=information,
+        noise=noise,
+    )
+
+
+def marker_noise(alone: InverseKinematics, n_q: int) -> float:
+    """Standard deviation of a marker's coordinate [m] from the misfit of frames that are fitted one by one."""
+    squares = np.concatenate([distances[np.isfinite(distances)] ** 2 for distances in alone.residuals.values()])
+    freedom = 3 * len(squares) - n_q * int(alone.known.sum())
+    return float(np.sqrt(squares.sum() / max(freedom, 1)))
 
 
 def motion_warnings(motion: InverseKinematics) -> tuple[str, ...]:

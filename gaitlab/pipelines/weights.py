@@ -22,7 +22,7 @@ from ..walking.criteria import by_name
 from ..walking.explanation import Explanation, ExplanationSettings, explain
 from ..walking.identification import IdentificationSettings
 from ..walking.identified_gait import IdentifiedGait, identified_gait
-from ..walking.joint_search import measured_frames
+from ..walking.joint_search import MeasuredFrames
 from ..walking.model import walking_functions
 from ..walking.tracking import MeasuredStride, measured_stride
 from .optimal_arrays import optimal_arrays
@@ -44,8 +44,8 @@ class WeightsRequest:
     subject: SubjectModel
     q: np.ndarray
     """Measured coordinates, gait frame [m, rad], shape (n_frames, n_q); NaN where markers are missing."""
-    unsmoothed: np.ndarray
-    """The same from the markers of single frames, shape (n_frames, n_q)."""
+    frames: MeasuredFrames
+    """What the markers of single frames say."""
     heading: float
     """Direction of the gait frame's x axis in the laboratory [rad]."""
     criteria: tuple[str, ...]
@@ -170,7 +170,7 @@ def _explain_all(
         begin = perf_counter()
         try:
             # The first stride carries the comparison with other weights; the others are there for the spread.
-            frames = measured_frames(stride, request.unsmoothed, request.recording.rate)
+            frames = request.frames.of_stride(stride)
             found = explain(stride, replace(settings, single_criteria=not explained), report, workers, frames)
         except NotConverged as error:
             failed.append(f"{where}: {error}")

@@ -12,7 +12,7 @@ from ..errors import NotConverged
 from ..nlp.sparse_solution import Status
 from ..nlp.workers import Workers
 from .identification import IdentificationSettings, WalkLevel, WalkOptimum
-from .joint_search import JointSearch, MeasuredFrames, unsmoothed_stride
+from .joint_search import JointSearch, MeasuredFrames, closer_stride
 from .tracking import MeasuredStride, TrackedWalk, TrackingSettings, track
 
 CERTIFICATE = 1e-6
@@ -120,8 +120,8 @@ def _explain_with_states(
     workers: Workers | None,
 ) -> Explanation | None:
     """Weights and states between arcs together; None where that does not converge."""
-    stride = unsmoothed_stride(tracked.stride, frames)
-    close = track(stride, settings.tracking, _part(report, "tracking single frames"))
+    stride = closer_stride(tracked.stride, frames)
+    close = track(stride, settings.tracking, _part(report, "tracking with less smoothing"))
     if close.solution.status is not Status.SOLVED:
         return None
     level = WalkLevel(close, settings.identification, workers)

@@ -35,6 +35,8 @@ HEIGHTS = ((2, 5), (8, 11))
 
 NEARBY = 12
 """Iterations granted to a start that should be close; a good prediction needs two to five."""
+PATIENCE = 30
+"""Iterations granted to a start that is tried once and then given up."""
 AFAR, UNKNOWN = 1e-4, 1e-3
 """First barrier parameters from a solution for other weights, and from a walk that is no solution."""
 
@@ -210,6 +212,10 @@ class WalkLevel:
         """Solve for theta, shape (n_theta,), from a nearby solution."""
         near = replace(self.settings.solver, max_iter=NEARBY)
         return self._solve(self.problem(theta), start, (near, self._from(AFAR)))
+
+    def respond_nearby(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
+        """Solve for theta, shape (n_theta,), from a prediction that is good or not worth pursuing."""
+        return self._solve(self.problem(theta), start, (replace(self.settings.solver, max_iter=PATIENCE),))
 
     def respond_from_afar(
         self, theta: np.ndarray, start: SparseSolution, done: Callable[[int], None] | None = None

@@ -4,17 +4,19 @@ r"""The weights together with the states between the arcs, from every measured f
 measurement, errors of these states are what spoils the weights: tracking smooths them, and at changes of contact
 velocities bend within a few milliseconds. Then they are unknowns like the weights:
 
-.. math:: \min_{\theta, X} \; \tfrac12 \sum_{t, i} \frac{(q^*_i(t; \theta, X) - \hat q_i(t))^2}{\sigma_i^2}
+.. math:: \min_{\theta, X} \; \tfrac1{2 \sigma^2} \sum_t (q^*_t - \hat q_t)' G_t (q^*_t - \hat q_t)
           + \tfrac12 |c(X)|^2, \qquad \theta \ge 0, \; \sum \theta = 1,
 
-with all given states X, the optimal arcs q* between them, unsmoothed coordinates at every frame, and the conditions c
-of planted feet. Gauss-Newton with Marquardt's damping; X is eliminated from each step, and the covariance of the
-weights is the marginal one. The criteria are divided by their values on the estimated optimum itself, and sigma is the
-coordinates' own misfit: both are renewed until they stay.
+with all given states X, the optimal arcs q*(theta, X) between them, coordinates of single frames and what their markers
+tell of them, G = J'J (to first order these are the markers' own distances), and the conditions c of planted feet.
+Gauss-Newton with Marquardt's damping; X is eliminated from each step, and the covariance of the weights is the marginal
+one. The criteria are divided by their values on the estimated optimum itself, and sigma is the markers' own misfit:
+both are renewed until they stay.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -36,23 +38,41 @@ class MeasuredFrames:
     """Coordinates as the markers of single frames say."""
 
     times: np.ndarray
-    """Of the frames within the stride [s], same origin as the stride's nodes, shape (n_frames,)."""
+    """From the first stored frame [s], shape (n_frames,)."""
     q: np.ndarray
-    """Unsmoothed coordinates, gait frame with the floor at zero [m, rad], shape (n_frames, n_q)."""
+    """Unsmoothed coordinates, gait frame [m, rad], shape (n_frames, n_q); NaN where markers are missing."""
+    little_smoothed: np.ndarray
+    """Coordinates smoothed as little as their noise allows [m, rad], shape (n_frames, n_q)."""
+    information: np.ndarray
+    """What the markers tell of `q`, J'J [m^2 per unit of the coordinates], shape (n_frames, n_q, n_q)."""
+
+    noise: float
+    """Standard deviation of a marker's coordinate [m]."""
+
+    def of_stride(self, stride: MeasuredStride) -> "MeasuredFrames":
+        """The known frames within a stride, its floor at zero."""
+        inside = (self.times >= stride.times[0] - 1e-9) & (self.times <= stride.times[-1] + 1e-9)
+        inside &= np.isfinite(self.q).all(axis=1)
+        floor = np.zeros(self.q.shape[1])
+        floor[2] = stride.floor
+        return MeasuredFrames(
+            times=self.times[inside],
+            q=self.q[inside] - floor,
+            little_smoothed=self.little_smoothed[inside] - floor,
+            information=self.information[inside],
+            noise=self.noise,
+        )
+
+    @cached_property
+    def roots(self) -> np.ndarray:
+        """R with R'R = information, shape (n_frames, n_q, n_q)."""
+        values, vectors = np.linalg.eigh(self.information)
+        return np.sqrt(np.maximum(values, 0.0))[:, :, None] * np.swapaxes(vectors, 1, 2)
 
 
-def measured_frames(stride: MeasuredStride, q: np.ndarray, rate: float) -> MeasuredFrames:
-    """The frames of a stride that are known, from coordinates q (n_frames, n_q) [m, rad] of a trial at a rate [Hz]."""
-    times = np.arange(len(q)) / rate
-    inside = (times >= stride.times[0] - 1e-9) & (times <= stride.times[-1] + 1e-9) & np.isfinite(q).all(axis=1)
-    floor = np.zeros(q.shape[1])
-    floor[2] = stride.floor
-    return MeasuredFrames(times=times[inside], q=q[inside] - floor)
-
-
-def unsmoothed_stride(stride: MeasuredStride, frames: MeasuredFrames) -> MeasuredStride:
-    """The stride with the states that its single frames tell: the start of the search must not be smooth."""
-    spline = CubicSpline(frames.times, frames.q)
+def closer_stride(stride: MeasuredStride, frames: MeasuredFrames) -> MeasuredStride:
+    """The stride with the little smoothed motion as its reference: where the search starts from."""
+    spline = CubicSpline(frames.times, frames.little_smoothed)
     return replace(stride, reference=np.hstack([spline(stride.times), spline(stride.times, 1)]))
 
 
@@ -64,17 +84,15 @@ class JointSearch:
     """Error of a planted point's place that weighs as much as a standard deviation of a coordinate [m]."""
     speed: float = 2e-3
     """The same of its speed [m/s]."""
-    first_sigma: float = 2e-3
-    """Standard deviation of the coordinates until their misfit is known [m, rad]."""
-    least_sigma: float = 5e-4
-    """No coordinate counts as measured or computed better than this [m, rad]: the grid's own error."""
+    least_sigma: float = 5e-5
+    """Markers do not count as measured or computed better than this [m]: the grid's own error."""
     rounds: int = 6
     """How often normalisers and standard deviations are renewed at most."""
     tol_round: float = 1e-3
     """Ended when no weight moves by more in a round."""
     tol_step: float = 1e-4
     """A round has converged when no weight moves by more in a step."""
-    tol_decrease: float = 1e-4
+    tol_decrease: float = 1e-3
     """A round has converged when the loss falls by less, relatively."""
     max_iter: int = 25
     damping: float = 1e-4
@@ -93,9 +111,8 @@ class JointSearch:
         `progress(iteration, rms)` may raise `errors.Cancelled`.
         """
         theta, optimum = start
-        sigma = np.full(frames.q.shape[1], self.first_sigma)
         iterations, lower_iterations, settled = 0, 0, False
-        run = _Run(self, frames, sigma, _State(level, theta, optimum), progress)
+        run = _Run(self, frames, max(frames.noise, self.least_sigma), _State(level, theta, optimum), progress)
         for _ in range(self.rounds):
             run.search()
             iterations, lower_iterations = iterations + run.iterations, lower_iterations + run.lower_iterations
@@ -137,8 +154,8 @@ class _Run:
 
     method: JointSearch
     frames: MeasuredFrames
-    sigma: np.ndarray
-    """Standard deviations of the coordinates [m, rad], shape (n_q,)."""
+    sigma: float
+    """Standard deviation of a marker's coordinate [m]."""
     state: _State
     progress: Progress | None
     damping: float = field(init=False)
@@ -184,8 +201,12 @@ class _Run:
         states = state.optimum.problem.states(state.optimum.solution.w).reshape(-1, 2, n_q)
         return np.einsum("fnj,njq->fq", self.table, states) - self.frames.q
 
+    def _white(self, state: _State) -> np.ndarray:
+        """The misfit as uncorrelated numbers with a standard deviation of one, shape (n_frames, n_q)."""
+        return np.einsum("fij,fj->fi", self.frames.roots, self.misfit(state)) / self.sigma
+
     def _loss(self, state: _State) -> float:
-        r, c = self.misfit(state) / self.sigma, self.conditions.values(state.level.given)[0]
+        r, c = self._white(state), self.conditions.values(state.level.given)[0]
         return 0.5 * float(np.sum(r**2) + c @ c)
 
     def _linearised(self) -> _Linearised:
@@ -197,10 +218,10 @@ class _Run:
         spread = spread_moves(of_states[:, :, n_theta:], level.given_nodes).reshape(n_nodes, 2, n_q, -1)
         own = of_states[:, :, :n_theta].reshape(n_nodes, 2, n_q, -1)
         sampled = np.tensordot(self.table, np.concatenate([own, spread], axis=3), axes=([1, 2], [0, 1]))
-        scaled = (sampled / self.sigma[:, None]).reshape(-1, sampled.shape[2])
+        scaled = (self.frames.roots @ sampled / self.sigma).reshape(-1, sampled.shape[2])
         c, by_given = self.conditions.values(level.given)
         return _Linearised(
-            r=np.concatenate([(self.misfit(state) / self.sigma).ravel(), c]),
+            r=np.concatenate([self._white(state).ravel(), c]),
             by_theta=np.vstack([scaled[:, :n_theta], np.zeros((len(c), n_theta))]),
             by_states=np.vstack([scaled[:, n_theta:], by_given.reshape(len(c), -1)]),
             moves=moves,
@@ -239,7 +260,7 @@ class _Run:
     def _moved(self, lin: _Linearised, theta: np.ndarray, step: np.ndarray) -> _State:
         level = self.state.level.with_given(self.state.level.given + step)
         start = self._predicted(lin.moves, theta - self.state.theta, step)
-        optimum = level.respond(theta, start)
+        optimum = level.respond_nearby(theta, start)
         self.lower_iterations += optimum.solution.iterations
         return _State(level, theta, optimum)
 
@@ -258,24 +279,24 @@ class _Run:
         """The next round: normalisers and standard deviations of the state that was found."""
         level, theta = self.state.level.normalised_at(self.state.optimum, self.state.theta)
         freedom = 1.0 - self.state.level.given.size / self.frames.q.size
-        spread = np.sqrt(np.mean(self.misfit(self.state) ** 2, axis=0) / max(freedom, 0.1))
+        sigma = self.sigma * float(np.sqrt(np.mean(self._white(self.state) ** 2) / max(freedom, 0.1)))
         optimum = level.respond(theta, self.state.optimum.solution)
         return _Run(
             self.method,
             self.frames,
-            np.maximum(spread, self.method.least_sigma),
+            max(sigma, self.method.least_sigma),
             _State(level, theta, optimum),
             self.progress,
         )
 
     def estimate(self, settled: bool, iterations: int, lower_iterations: int) -> WeightEstimate:
         """The result, with the marginal covariance of the weights."""
-        lin, misfit = self._linearised(), self.misfit(self.state)
+        lin, white = self._linearised(), self._white(self.state)
         basis = qr(lin.by_states, mode="economic")[0]
         marginal = lin.by_theta - basis @ (basis.T @ lin.by_theta)
         # The states between arcs take degrees of freedom.
-        freedom = max(1.0 - self.state.level.given.size / misfit.size, 0.1)
-        uncertainty = weight_uncertainty(marginal, (misfit / self.sigma) / np.sqrt(freedom))
+        freedom = max(1.0 - self.state.level.given.size / white.size, 0.1)
+        uncertainty = weight_uncertainty(marginal, white / np.sqrt(freedom))
         reason = "converged: weights, states and normalisers stay" if settled else "weights and states do not settle"
         return WeightEstimate(
             theta=self.state.theta,

@@ -1,7 +1,7 @@
 """The inverse problem against walks of known weights, which another grid and another integrator made.
 
-The states between arcs, the normalisers and the floors are those of the truth; durations, contacts and the motion
-within the arcs are all that the search for the weights sees.
+First from the C3D files alone. Then with the states between arcs, the normalisers and the floors of the truth, where
+durations, contacts and the motion within the arcs are all that the search for the weights sees.
 """
 
 import json
@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from demo_stride import demo_request
 
 from gaitlab.bilevel.implicit_gauss_newton import ImplicitGaussNewton
 from gaitlab.bilevel.result import rms
@@ -17,7 +18,9 @@ from gaitlab.pipelines.demo_data import WALKS
 from gaitlab.pipelines.demo_patterns import GRID, demo_patterns
 from gaitlab.pipelines.demo_subject import demo_subject
 from gaitlab.pipelines.demo_tracking import pattern_stages
+from gaitlab.pipelines.weights import usable_strides
 from gaitlab.walking.arcs import part_of_stages
+from gaitlab.walking.explanation import ExplanationSettings, explain
 from gaitlab.walking.identification import IdentificationSettings, WalkLevel, arc_boundaries
 from gaitlab.walking.tracking import measured_stride, track
 
@@ -49,6 +52,17 @@ def level_of(truth, stride):
     level.normalisers = np.array(truth["normalisers"])
     level.acceleration_normaliser = truth["floors"]["acceleration_normaliser"]
     return level
+
+
+@pytest.mark.parametrize("child", DEMO_CHILDREN)
+def test_known_weights_come_back_from_the_recording(child):
+    request = demo_request(child)
+    _, stride = usable_strides(request)[0][0]
+    frames = request.frames.of_stride(stride)
+    found = explain(stride, ExplanationSettings(single_criteria=False), frames=frames)
+    assert found.states_estimated and found.is_certified
+    truth = json.loads((demo_folder(child) / "truth.json").read_text())["walks"]["walk1"]
+    np.testing.assert_allclose(found.estimate.theta, truth["weights"], atol=CLOSE)
 
 
 @pytest.mark.parametrize("walk", ["walk1", "walk2"])

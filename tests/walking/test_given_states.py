@@ -65,9 +65,12 @@ def run():
     theta = np.full(4, 0.25)
     stride = level.tracked.stride
     times = np.arange(stride.times[0], stride.times[-1], 0.01)
-    frames = MeasuredFrames(times=times, q=np.zeros((len(times), stride.n_q)))
+    n, n_q = len(times), stride.n_q
+    information = np.broadcast_to(np.eye(n_q), (n, n_q, n_q))
+    zero = np.zeros((n, n_q))
+    frames = MeasuredFrames(times=times, q=zero, little_smoothed=zero, information=information, noise=1.0)
     state = _State(level, theta, level.from_tracking(theta))
-    return _Run(JointSearch(), frames, np.ones(stride.n_q), state, None)
+    return _Run(JointSearch(), frames, 1.0, state, None)
 
 
 def test_residuals_follow_weights_and_given_states_as_their_derivatives_say(run):
