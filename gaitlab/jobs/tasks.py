@@ -20,7 +20,7 @@ from ..errors import StorageError
 from ..storage.database import Database
 from ..storage.files import FileStore, Stored
 from ..storage.models import Job, JobKind, JobStatus, Recording, Result, ResultFile, Subject
-from ..storage.references import refer
+from ..storage.references import refer, remove_unused
 from ..storage.settings import Settings
 from . import metrics
 from .claims import Claim, beat, claim, end, requeue
@@ -138,13 +138,29 @@ class Runner:
             failure = {"kind": "refused", "error": ended.outcome["error_kind"]}
             await self._end(claimed, JobStatus.FAILED, ended.outcome["error"], failure)
         else:
+            await self._keep((claimed, job, ended), work.out)
+
+    async def _keep(self, done: tuple[Claim, Job, Ended], out: Path) -> None:
+        """Store the files, then write the result; what a superseded attempt has stored is removed again."""
+        claimed, job, _ = done
+        try:
+            stored, written = await self._store_and_write(done, out)
+        except StorageError:
+            # Somebody may have removed an equal content in between: once more.
             try:
-                stored = await asyncio.to_thread(_keep_files, self.store, work.out)
-                await self._persistently(lambda session: self._write(session, (claimed, job, ended), stored))
+                stored, written = await self._store_and_write(done, out)
             except StorageError as error:
                 await self._end(claimed, JobStatus.FAILED, str(error), {"kind": "storage"})
-            else:
-                metrics.JOBS.labels(job.kind.value, JobStatus.SUCCEEDED.value).inc()
+                return
+        if written:
+            metrics.JOBS.labels(job.kind.value, JobStatus.SUCCEEDED.value).inc()
+        else:
+            digests = [each.sha256 for each in stored.values()]
+            await asyncio.to_thread(remove_unused, self.database, self.store, digests)
+
+    async def _store_and_write(self, done: tuple[Claim, Job, Ended], out: Path) -> tuple[dict[str, Stored], bool]:
+        stored = await asyncio.to_thread(_keep_files, self.store, out)
+        return stored, await self._persistently(lambda session: self._write(session, done, stored))
 
     def _write(self, session: Session, done: tuple[Claim, Job, Ended], files: Mapping[str, Stored]) -> bool:
         """The result, its files and the end of the job in one transaction; False if the attempt was superseded."""

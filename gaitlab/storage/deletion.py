@@ -82,7 +82,7 @@ def delete_session(database: Database, store: FileStore, session_id: UUID, actor
         visit = session.get(GaitSession, session_id, with_for_update=True)
         if visit is None:
             raise NotFound("session", str(session_id), ())
-        deleted = _delete_sessions(session, [session_id], ())
+        deleted = _delete_sessions(session, [session_id], _jobs_that_read(session, visit))
         record(session, actor, _deed("sessions", str(session_id), visit.patient_id, deleted))
     remove_unused(database, store, deleted.digests)
     return deleted
@@ -97,7 +97,6 @@ def _delete_sessions(session: Session, sessions: Sequence[UUID], more_jobs: Iter
     recordings = list(session.scalars(select(Recording.id).where(Recording.session_id.in_(sessions))))
     uploads = select(Upload.id).where(Upload.session_id.in_(sessions))
     jobs = {*more_jobs, *session.scalars(select(Job.id).where(Job.session_id.in_(sessions)))}
-    jobs |= _jobs_that_read(session, sessions, recordings)
     digests = tuple(row[0] for row in session.execute(_contents(sessions, list(jobs))))
     results = select(Result.id).where(Result.job_id.in_(jobs))
     reports = select(ReportVersion.id).where(
@@ -122,15 +121,20 @@ def _delete_sessions(session: Session, sessions: Sequence[UUID], more_jobs: Iter
     return Deleted(sessions=len(sessions), recordings=len(recordings), jobs=len(jobs), digests=digests)
 
 
-def _jobs_that_read(session: Session, sessions: Sequence[UUID], recordings: Sequence[UUID]) -> set[UUID]:
-    """Jobs of other visits whose inputs are recordings or results of these visits, and the jobs that read theirs."""
-    sources = {str(each) for each in recordings}
-    sources |= {str(each) for each in session.scalars(select(Result.id).where(Result.session_id.in_(sessions)))}
+def _jobs_that_read(session: Session, visit: GaitSession) -> set[UUID]:
+    """Jobs on the same patient that read recordings or results of the visit, and those that read their results.
+
+    An analysis of somebody else with norms that the visit went into is none of them: it stays.
+    """
+    own = select(JobPatient.job_id).where(JobPatient.patient_id == visit.patient_id)
+    sources = {*session.scalars(select(Recording.id).where(Recording.session_id == visit.id))}
+    sources |= {*session.scalars(select(Result.id).where(Result.session_id == visit.id))}
     found: set[UUID] = set()
     while sources:
-        fresh = {*session.scalars(select(Job.id).where(READS.bindparams(sources=[*sources])))} - found
+        reads = READS.bindparams(sources=[str(each) for each in sources])
+        fresh = {*session.scalars(select(Job.id).where(reads, Job.id.in_(own)))} - found
         found |= fresh
-        sources = {str(each) for each in session.scalars(select(Result.id).where(Result.job_id.in_(fresh)))}
+        sources = {*session.scalars(select(Result.id).where(Result.job_id.in_(fresh)))}
     return found
 
 

@@ -124,7 +124,7 @@ async def during(runner, job_id, deed):
     await running
 
 
-def test_a_result_of_a_superseded_attempt_is_thrown_away(runner, visit, database):
+def test_a_result_of_a_superseded_attempt_is_thrown_away(runner, visit, database, store):
     job_id = submit_job(database, visit, settings={"do": "hang", "seconds": 5})
 
     def supersede():
@@ -133,6 +133,7 @@ def test_a_result_of_a_superseded_attempt_is_thrown_away(runner, visit, database
 
     asyncio.run(during(runner, job_id, supersede))
     assert results(database) == []
+    assert [name for name, _ in store.names()] == [visit.recordings[0].sha256]
     assert job_of(database, job_id).worker == "another"
 
 
@@ -148,6 +149,20 @@ def test_cancelling_ends_a_running_job_within_two_seconds(runner, visit, databas
     asyncio.run(during(runner, job_id, ask))
     assert job_of(database, job_id).status is JobStatus.CANCELLED
     assert time.monotonic() - asked[0] < 2.0
+
+
+def test_files_of_an_attempt_that_comes_too_late_are_removed(runner, visit, database, store):
+    job_id = submit_job(database, visit, settings={"do": "hang", "seconds": 1})
+    write = runner._write
+
+    def too_late(session, done, files):
+        claim(session, job_id, "another")
+        return write(session, done, files)
+
+    runner._write = too_late
+    run(runner, job_id)
+    assert results(database) == []
+    assert [name for name, _ in store.names()] == [visit.recordings[0].sha256]
 
 
 def test_a_shutdown_lets_the_job_wait_and_costs_no_attempt(runner, visit, database):

@@ -24,8 +24,9 @@ def succeed(work, progress):
 
 
 def hang(work, progress):
-    progress(Step(stage="hanging"))
-    subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+    # Like our own helpers, it ends with its parent at the latest, because its stdin does.
+    helper = subprocess.Popen([sys.executable, "-c", "import sys; sys.stdin.read()"], stdin=subprocess.PIPE)
+    progress(Step(stage="hanging", iteration=helper.pid))
     time.sleep(work.settings.get("seconds", 600))
     return succeed(work, progress)
 

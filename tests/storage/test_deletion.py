@@ -135,6 +135,17 @@ def test_a_comparison_with_others_goes_too(database, store):
         assert session.get(Patient, other.patient_id) is not None
 
 
+def test_an_analysis_of_somebody_else_with_norms_of_the_patient_stays(database, store):
+    visit, other = fill(database, store), make_visit(database, store, pseudonym="P002")
+    with database.transaction() as session:
+        norms, _ = add_result(session, store, None, [visit.patient_id], [], b"norms")
+        inputs = [{"role": "norms", "source": str(norms.id)}]
+        kept, _ = add_result(session, store, other.session_id, [other.patient_id], inputs, b"kept")
+    delete_patient(database, store, visit.patient_id, SYSTEM)
+    with database.sessions() as session:
+        assert list(session.scalars(select(Result.id))) == [kept.id]
+
+
 def test_a_visit_goes_with_what_was_computed_from_its_results(database, store):
     visit = fill(database, store)
     with database.transaction() as session:
