@@ -8,7 +8,7 @@ from rich.console import Console
 
 from ..errors import NotConverged
 from ..pipelines.gait_benchmark import COLUMNS, rows, solve_case
-from ..pipelines.gait_cases import CASES, load_case, thesis_gait
+from ..pipelines.gait_cases import CASES, available_cases, load_case, thesis_gait
 from ..report.gait_benchmark_figure import coordinates, postures, torques, velocities
 from ..walking.gait_courses import courses
 from .benchmark_ocp import as_table, write_files
@@ -23,7 +23,7 @@ def gait(
     ),
 ) -> None:
     """Estimate the weights of the thesis's two gaits from simulated measurements, thesis beside ours."""
-    names, console, failed = [thesis_gait(name).name for name in model or CASES], Console(), list[str]()
+    names, console, failed = [thesis_gait(name).name for name in model or available_cases()], Console(), list[str]()
     for name in names:
         case = load_case(name)
         console.print(f"{case.thesis.title} ...", style="dim")

@@ -187,9 +187,18 @@ def patient_problem(noise: float = 1.0, seed: int = 0) -> tuple[GaitLevel, GaitC
     return GaitLevel(case.gait, case.measured(noise, seed)), case
 
 
+def available_cases() -> list[str]:
+    """Names of the models whose data are there."""
+    return [name for name in CASES if _places(name)]
+
+
 def _path(name: str) -> Path:
-    places = [folder / "gait_benchmark" / f"{name}.json" for folder in DATA_FOLDERS]
-    found = [path for path in places if path.exists()]
+    found = _places(name)
     if not found:
-        raise NotFound("data of the gait model", name, [])
+        raise NotFound("data of the gait model", name, available_cases())
     return found[0]
+
+
+def _places(name: str) -> list[Path]:
+    places = [folder / "gait_benchmark" / f"{name}.json" for folder in DATA_FOLDERS]
+    return [path for path in places if path.exists()]
