@@ -102,7 +102,7 @@ def solve_case(
     start: np.ndarray | None = None,
     progress: Callable[[int, float], None] | None = None,
 ) -> GaitRun:
-    """Weights from simulated measurements, from start weights (4,), equal ones by default.
+    """Weights from simulated measurements, from start weights, shape (4,), equal ones by default.
 
     The search begins with a lower level that is drawn to the measurements, and goes on without.
 

@@ -186,7 +186,7 @@ def _parameters(subject: SubjectModel) -> np.ndarray:
 
 
 def after_impact(subject: SubjectModel, state: np.ndarray, point: str) -> np.ndarray:
-    """State (2 n_q,) after a rigid inelastic impact of a contact point, from the state before, (2 n_q,)."""
+    """State [m, rad, 1/s] after a rigid inelastic impact of a contact point, from that before, both shape (2 n_q,)."""
     layout, n_q = layout_of(subject), subject.n_q
     p = ca.SX(parameter_vector(subject))
     q, v, a = (ca.SX.sym(name, n_q) for name in "qva")

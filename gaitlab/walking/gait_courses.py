@@ -28,7 +28,7 @@ class GaitCourses:
     joints: Sequence[np.ndarray]
     """Chains of joint centres of the optimal gait [m], shapes (n_postures, n_points, 3)."""
     measured_joints: Sequence[np.ndarray]
-    """The same of the measured gait."""
+    """The same of the measured gait [m], shapes (n_postures, n_points, 3)."""
 
 
 def courses(optimum: GaitOptimum) -> GaitCourses:
