@@ -63,7 +63,7 @@ def _by_token(db: Session, text: str) -> Caller:
     moment = datetime.now(UTC)
     if found is None or (found[0].expires_at is not None and found[0].expires_at <= moment):
         raise NotSignedIn("the token does not exist, was revoked or has expired: make a new one")
-    token, user = found.tuple()
+    token, user = found
     if token.last_used_at is None or moment - token.last_used_at > SEEN_EVERY:
         db.execute(update(ApiToken).where(ApiToken.id == token.id).values(last_used_at=moment))
     scopes = {Permission(scope) for scope in token.scopes if scope in set(Permission)}
@@ -80,7 +80,7 @@ def _by_cookie(db: Session, text: str, settings: Settings) -> Caller:
     moment = datetime.now(UTC)
     if found is None or not is_alive(found[0], moment, settings):
         raise NotSignedIn("the session has ended: sign in again")
-    session, user = found.tuple()
+    session, user = found
     if moment - session.last_seen_at > SEEN_EVERY:
         db.execute(update(WebSession).where(WebSession.id == session.id).values(last_seen_at=moment))
     return _caller(user, PERMISSIONS[user.role], web_session_id=session.id)

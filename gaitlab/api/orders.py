@@ -269,7 +269,7 @@ def _order_comparison(call: Call, wanted: NewComparison) -> JobRequest:
 
 def _order_norms(call: Call, wanted: NewNorms) -> JobRequest:
     query = select(CohortMember.result_id, CohortMember.group).where(CohortMember.cohort_id == wanted.cohort_id)
-    rows = call.db.execute(query.order_by(CohortMember.result_id)).tuples().all()
+    rows = call.db.execute(query.order_by(CohortMember.result_id)).all()
     if not rows:
         raise Absent("cohort with members", wanted.cohort_id)
     inputs, patients = members(call, [ComparedResult(result_id=each, group=group) for each, group in rows])

@@ -1,10 +1,12 @@
 """Errors as problem documents (RFC 9457), with the sentences of the command line."""
 
-import logging
+import traceback
 from collections.abc import Callable, Mapping, Sequence
 from http import HTTPStatus
+from pathlib import Path
 from typing import Any
 
+import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from sqlalchemy.exc import DataError, IntegrityError, OperationalError, StatementError
@@ -41,7 +43,7 @@ _STATUS: tuple[tuple[type[GaitlabError], HTTPStatus], ...] = (
     (GaitlabError, HTTPStatus.UNPROCESSABLE_ENTITY),
 )
 """First fit counts: special before general. Bad recordings, subjects and references are content that does not fit."""
-_log = logging.getLogger(__name__)
+log = structlog.stdlib.get_logger()
 
 
 class Absent(NotFound):
@@ -143,9 +145,17 @@ def _clash(request: Request, error: Exception) -> Response:
 
 
 def _no_database(request: Request, error: Exception) -> Response:
-    _log.error("database not reachable: %s", type(error).__name__)
+    log.error("database not reachable", reason=type(error).__name__)
     sentence = "the database cannot be reached at the moment: try again"
     return problem(request, HTTPStatus.SERVICE_UNAVAILABLE, sentence, headers={"Retry-After": "2"})
+
+
+def _fault(request: Request, error: Exception) -> Response:
+    # Where it happened, but not the error's text, which may hold values.
+    places = [f"{Path(frame.filename).name}:{frame.lineno}" for frame in traceback.extract_tb(error.__traceback__)]
+    log.error("fault", kind=type(error).__name__, places=places[-6:])
+    sentence = "gaitlab made a mistake: give the number of the request to whoever runs the service"
+    return problem(request, HTTPStatus.INTERNAL_SERVER_ERROR, sentence)
 
 
 _HANDLERS: Mapping[type[Exception], Callable[[Request, Exception], Response]] = {
@@ -158,6 +168,7 @@ _HANDLERS: Mapping[type[Exception], Callable[[Request, Exception], Response]] = 
     StaleDataError: _stale,
     OperationalError: _no_database,
     PoolTimeout: _no_database,
+    Exception: _fault,
 }
 
 

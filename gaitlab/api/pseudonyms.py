@@ -15,7 +15,7 @@ from .caller import Call
 def masked_names(call: Call, sessions: Sequence[UUID]) -> dict[str, str]:
     """Stem of each recording of these visits, and the number that takes its place."""
     query = select(Recording.name, Recording.session_id).where(Recording.session_id.in_(sessions))
-    rows = call.db.execute(query.order_by(Recording.session_id, Recording.created_at, Recording.id)).tuples().all()
+    rows = call.db.execute(query.order_by(Recording.session_id, Recording.created_at, Recording.id)).all()
     masks: dict[str, str] = {}
     for name, _ in rows:
         masks.setdefault(Path(name).stem, f"trial-{len(masks) + 1}")

@@ -95,7 +95,7 @@ def part(call: Call, kind: type[P], object_id: UUID, action: str) -> P:
     found = call.db.execute(query).one_or_none()
     if found is None:
         raise Absent(kind.__name__.lower().removesuffix("version"), object_id)
-    row, patient_id = found.tuple()
+    row, patient_id = found
     require_write(call, patient_id, action)
     call.audit(action, kind.__tablename__, object_id, patient_id)
     return row

@@ -225,7 +225,7 @@ def list_shares(call: Sharer, patient_id: UUID) -> list[Share]:
         .where(PatientShare.patient_id == patient_id)
         .order_by(User.login)
     )
-    return [_share(share, user) for share, user in call.db.execute(query).tuples()]
+    return [_share(share, user) for share, user in call.db.execute(query)]
 
 
 def _share(share: PatientShare, user: User) -> Share:

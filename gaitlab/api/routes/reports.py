@@ -48,7 +48,7 @@ def _collect(call: Call, row: ReportVersion) -> None:
     if job_id is None or row.pdf_sha256 is not None:
         return
     query = select(ResultFile.name, ResultFile.sha256).join(Result, Result.id == ResultFile.result_id)
-    made = dict(call.db.execute(query.where(Result.job_id == UUID(job_id))).tuples().all())
+    made = dict(call.db.execute(query.where(Result.job_id == UUID(job_id))).all())
     row.pdf_sha256, row.html_sha256 = made.get(FILES["pdf"]), made.get(FILES["html"])
     call.db.flush()
 
@@ -67,7 +67,7 @@ def _answer(call: Call, row: ReportVersion) -> Report:
         content=row.content,
         has_pdf=row.pdf_sha256 is not None,
         has_html=row.html_sha256 is not None,
-        signatures=[_signature(signature, name) for signature, name in rows.tuples()],
+        signatures=[_signature(signature, name) for signature, name in rows],
     )
 
 

@@ -63,7 +63,7 @@ def get_examination_schema() -> dict[str, Any]:
 @router.get("/system")
 def get_system_state(request: Request, call: Manager) -> SystemState:
     """Queue, workers, and how much is stored."""
-    counts = dict(call.db.execute(select(Job.status, func.count()).group_by(Job.status)).tuples().all())
+    counts = dict(call.db.execute(select(Job.status, func.count()).group_by(Job.status)).all())
     files, file_bytes = call.db.execute(
         select(func.count(), func.coalesce(func.sum(StoredFile.size), 0)).select_from(StoredFile)
     ).one()
@@ -73,7 +73,7 @@ def get_system_state(request: Request, call: Manager) -> SystemState:
         jobs={status: counts.get(status, 0) for status in JobStatus},
         workers=_workers(call.db),
         viewers=len(services_of(request).viewers),
-        rows={name: count for name, count in call.db.execute(_ROWS).tuples() if name in known},
+        rows={name: count for name, count in call.db.execute(_ROWS) if name in known},
         database_bytes=call.db.scalar(text("SELECT pg_database_size(current_database())")) or 0,
         files=files,
         file_bytes=int(file_bytes),
@@ -83,5 +83,5 @@ def get_system_state(request: Request, call: Manager) -> SystemState:
 def _workers(db: Session) -> list[dict[str, Any]]:
     return [
         {"id": number, "last_heartbeat": None if seen is None else seen.isoformat()}
-        for number, seen in db.execute(_WORKERS).tuples()
+        for number, seen in db.execute(_WORKERS)
     ]
