@@ -11,7 +11,9 @@ weight at zero can only be larger: there the quantile is that of the mixture of 
 (Self and Liang 1987, case 5), which leaves the same error on one side.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.optimize import brentq, nnls
@@ -81,9 +83,14 @@ def weight_interval(fit: LinearisedFit, index: int, confidence: float = CONFIDEN
     def over(value: float) -> float:
         return fit.profile(index, value) - limit
 
-    lower = 0.0 if one_sided or over(0.0) <= 0.0 else float(brentq(over, 0.0, now, xtol=1e-6))
-    upper = 1.0 if over(1.0) <= 0.0 else float(brentq(over, now, 1.0, xtol=1e-6))
+    lower = 0.0 if one_sided or over(0.0) <= 0.0 else _root(over, 0.0, now)
+    upper = 1.0 if over(1.0) <= 0.0 else _root(over, now, 1.0)
     return WeightInterval(lower=lower, upper=upper, one_sided=one_sided)
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    # scipy's own signature says that more than the root may come back.
+    return cast("float", brentq(function, low, high, xtol=1e-6))
 
 
 def not_told_apart(fit: LinearisedFit, confidence: float = CONFIDENCE) -> tuple[tuple[int, int], ...]:

@@ -18,6 +18,10 @@ from ..walking.criteria import THESIS
 from .progress import progress_bars
 from .summary import print_summary
 
+FILE_OFFSETS = "Use the static offsets stored in the file, not those computed."
+ALONG_WALK = "Forward is the walking direction itself, not the laboratory axis next to it."
+VICON_INERTIA = "Segment inertia as in Plug-in Gait, to compare moments."
+
 
 def analyse(  # noqa: PLR0913 - one argument per option of the command
     walks: Annotated[list[Path], typer.Argument(help="Walking trials, C3D.", show_default=False)],
@@ -38,16 +42,10 @@ def analyse(  # noqa: PLR0913 - one argument per option of the command
     seed: Annotated[int, typer.Option(help="Seed of everything random.", min=0)] = 0,
     processes: Annotated[int, typer.Option(help="Processes to compute with; 0: all processors.", min=0)] = 0,
     redetect_events: Annotated[bool, typer.Option(help="Detect events although the file has some.")] = False,
-    file_offsets: Annotated[
-        bool, typer.Option(help="Use the static offsets stored in the file, not those computed.")
-    ] = False,
-    along_walk: Annotated[
-        bool, typer.Option(help="Forward is the walking direction itself, not the laboratory axis next to it.")
-    ] = False,
+    file_offsets: Annotated[bool, typer.Option(help=FILE_OFFSETS)] = False,
+    along_walk: Annotated[bool, typer.Option(help=ALONG_WALK)] = False,
     moments_in: Annotated[MomentFrame, typer.Option(help="Axes that joint moments are expressed in.")] = "distal",
-    vicon_inertia: Annotated[
-        bool, typer.Option(help="Segment inertia as in Plug-in Gait, to compare moments.")
-    ] = False,
+    vicon_inertia: Annotated[bool, typer.Option(help=VICON_INERTIA)] = False,
     norms: Annotated[str, typer.Option(help="Reference cohort: a file of 'gaitlab norms build', or none.")] = BUNDLED,
     match_speed: Annotated[bool, typer.Option(help="Compare with norms of the person's own speed.")] = False,
     gdi: Annotated[Path | None, typer.Option(help="Basis of the gait deviation index, from norms import-gdi.")] = None,

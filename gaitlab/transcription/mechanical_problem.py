@@ -286,7 +286,7 @@ class MechanicalProblem:
         return self.scatter_gradient(s.weights[:, None, None] * gradient)
 
     def to_local(self, block: np.ndarray) -> np.ndarray:
-        """Chain rule from (q, v, a, f) to (q0, v0, q1, v1, f) along axis 1: (2 N, 3 n_q + n_f, m) to (2 N, n_z, m)."""
+        """Chain rule from (q, v, a, f), shape (2 N, 3 n_q + n_f, m), to (q0, v0, q1, v1, f), shape (2 N, n_z, m)."""
         s, n_q = self.shared, self.shared.layout.n_q
         n, m = len(block), block.shape[2]
         x = np.swapaxes(s.coefficients, 1, 2) @ block[:, : 3 * n_q].reshape(n, 3, n_q * m)

@@ -75,16 +75,12 @@ def contact_phases(
     for column, side in enumerate(SIDES):
         heel, toe = points[f"{side}_heel"], points[f"{side}_toe"]
         stances = stance_frames(events.feet, side, rate, len(q))
-        marks = [(change.kind, round(change.time * rate)) for change in events.soles if change.side == side]
         rise = heel[:, 2] - toe[:, 2]
         resting = np.maximum(_speed(heel, rate), _speed(toe, rate)) < settings.resting_speed * walking_speed
         rise = rise - _flat_level(rise, resting, stances, settings.largest_tilt)
         for stance in stances:
-            own = {kind: frame - stance.start for kind, frame in marks if stance.start <= frame <= stance.stop}
-            known = np.isfinite(rise[stance])
-            parts = (
-                _parts(rise[stance], settings) if not own else _marked_parts(np.where(known, rise[stance], 0.0), own)
-            )
+            own = _marks(events.soles, side, rate, stance)
+            parts = _marked_parts(rise[stance], own) if own else _parts(rise[stance], settings)
             phases[stance, column] = parts
     return phases
 
@@ -146,11 +142,18 @@ def _parts(rise: np.ndarray, settings: SoleSettings) -> np.ndarray:
     return np.where(filled < -settings.toe_height, HEEL, np.where(filled > settings.heel_height, TOE, FLAT))
 
 
+def _marks(soles: Sequence[SoleChange], side: Side, rate: float, stance: slice) -> dict[SoleChangeKind, int]:
+    """Frames of a foot's marked changes from the beginning of a stance in which they lie."""
+    frames: list[tuple[SoleChangeKind, int]] = [(c.kind, round(c.time * rate)) for c in soles if c.side == side]
+    return {kind: frame - stance.start for kind, frame in frames if stance.start <= frame <= stance.stop}
+
+
 def _marked_parts(rise: np.ndarray, marks: Mapping[SoleChangeKind, int]) -> np.ndarray:
-    """States along one stance from marked frames and the heel's height over the toe [m], shape (n,)."""
+    """States along one stance from marked frames and the heel's height over the toe [m], NaN where unknown, (n,)."""
     frames = np.arange(len(rise))
     flat, off = marks.get("foot_flat", 0), marks.get("heel_off", len(rise))
-    first = HEEL if np.mean(rise[: max(flat, 1)]) < 0.0 else TOE
+    before = rise[: max(flat, 1)]
+    first = TOE if np.sum(before[np.isfinite(before)]) > 0.0 else HEEL
     return np.where(frames < flat, first, np.where(frames < off, FLAT, TOE))
 
 

@@ -130,7 +130,7 @@ class JointSearch:
 class _State:
     level: WalkLevel
     theta: np.ndarray
-    """Shape (n_theta,)."""
+    """Weights, shape (n_theta,)."""
     optimum: WalkOptimum
 
 
@@ -141,9 +141,9 @@ class _Linearised:
     r: np.ndarray
     """Measurements, then conditions of the floor, shape (n_m + n_c,)."""
     by_theta: np.ndarray
-    """Shape (n_m + n_c, n_theta)."""
+    """Derivatives in the weights, shape (n_m + n_c, n_theta)."""
     by_states: np.ndarray
-    """Shape (n_m + n_c, n_given * 2 n_q)."""
+    """Derivatives in the given states, shape (n_m + n_c, n_given * 2 n_q)."""
     moves: np.ndarray
     """Of (w, lam_g) with the weights and the two colours of states, shape (n_w + n_g, n_theta + 4 n_q)."""
 
