@@ -1,0 +1,37 @@
+import { createTheme, MantineProvider } from "@mantine/core";
+import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
+import { Problem } from "../api/client";
+import { SessionProvider } from "../account/Account";
+import { I18nProvider } from "../i18n/I18n";
+import { Pages } from "./Pages";
+
+const theme = createTheme({
+  primaryColor: "cyan",
+  primaryShade: { light: 9, dark: 8 },
+  fontFamily: "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif",
+  defaultRadius: "md",
+});
+
+const queries = new QueryClient({
+  defaultOptions: {
+    queries: {
+      staleTime: 5_000,
+      // A refusal stays a refusal; only a lost connection is worth a second try.
+      retry: (count, error) => !(error instanceof Problem) && count < 2,
+    },
+  },
+});
+
+export function App() {
+  return (
+    <MantineProvider theme={theme} defaultColorScheme="auto">
+      <I18nProvider>
+        <QueryClientProvider client={queries}>
+          <SessionProvider>
+            <Pages />
+          </SessionProvider>
+        </QueryClientProvider>
+      </I18nProvider>
+    </MantineProvider>
+  );
+}

@@ -1,0 +1,184 @@
+/** One curve of both sides over the cycle, with the reference band, foot-off lines and the shared cursor. */
+import { useEffect, useMemo, useRef } from "react";
+import { Paper, Text } from "@mantine/core";
+import uPlot from "uplot";
+import { useColours, type Colours } from "../app/colours";
+import { useI18n } from "../i18n/I18n";
+import type { Cursor } from "./cursor";
+import { SIDES, type Band, type Side, type Values } from "./document";
+import type { PanelLayout } from "./panels";
+
+const HEIGHT = 170;
+
+/** One line of a panel; `dash` tells sessions apart, colour sides. */
+export interface Line {
+  side: Side;
+  mean: Values;
+  /** Missing where single cycles are shown. */
+  sd?: Values;
+  dash?: number[];
+  faint?: boolean;
+  label: string;
+}
+
+export interface PanelData {
+  lines: readonly Line[];
+  norm?: Band | undefined;
+  /** Per cent of the cycle at which each foot leaves the floor. */
+  footOff: Readonly<Partial<Record<Side, number | null>>>;
+}
+
+interface Props {
+  layout: PanelLayout;
+  data: PanelData;
+  cursor: Cursor;
+  onPick?: (name: string) => void;
+}
+
+type Row = (number | null)[];
+const PERCENT = Array.from({ length: 101 }, (_, index) => index);
+
+function shifted(mean: Values, sd: Values, sign: number): Row {
+  return mean.map((value, index) => {
+    const spread = sd[index];
+    return value == null || spread == null ? null : value + sign * spread;
+  });
+}
+
+/** Series, bands and rows of numbers of a panel. */
+function build({ lines, norm }: PanelData, colours: Colours) {
+  const rows: Row[] = [];
+  const series: uPlot.Series[] = [{}];
+  const bands: uPlot.Band[] = [];
+  const add = (row: Row, options: uPlot.Series) => {
+    rows.push(row);
+    series.push({ points: { show: false }, ...options });
+  };
+  const addBand = (mean: Values, sd: Values, fill: string) => {
+    add(shifted(mean, sd, 1), { stroke: "transparent" });
+    add(shifted(mean, sd, -1), { stroke: "transparent" });
+    bands.push({ series: [series.length - 2, series.length - 1], fill });
+  };
+  if (norm) addBand(norm.mean, norm.sd, colours.band);
+  for (const line of lines) {
+    const colour = colours[line.side];
+    if (line.sd) addBand(line.mean, line.sd, `${colour}26`);
+    add([...line.mean], {
+      stroke: line.faint ? `${colour}99` : colour,
+      width: line.faint ? 1 : 2,
+      label: line.label,
+      ...(line.dash ? { dash: line.dash } : {}),
+    });
+  }
+  return { series, bands, data: [PERCENT, ...rows] as uPlot.AlignedData };
+}
+
+function drawMarks(chart: uPlot, footOff: PanelData["footOff"], colours: Colours): void {
+  const { ctx, bbox } = chart;
+  ctx.save();
+  ctx.lineWidth = devicePixelRatio;
+  const zero = chart.valToPos(0, "y", true);
+  ctx.strokeStyle = colours.text;
+  ctx.globalAlpha = 0.5;
+  ctx.beginPath();
+  ctx.moveTo(bbox.left, zero);
+  ctx.lineTo(bbox.left + bbox.width, zero);
+  ctx.stroke();
+  ctx.globalAlpha = 1;
+  for (const side of SIDES) {
+    const percent = footOff[side];
+    if (percent == null) continue;
+    const x = chart.valToPos(percent, "x", true);
+    ctx.strokeStyle = colours[side];
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+  }
+  ctx.restore();
+}
+
+export function CyclePanel({ layout, data, cursor, onPick }: Props) {
+  const { name, t, number } = useI18n();
+  const colours = useColours();
+  const place = useRef<HTMLDivElement>(null);
+  const readout = useRef<HTMLDivElement>(null);
+  const built = useMemo(() => build(data, colours), [data, colours]);
+  const [down, up] = layout.directions;
+  const title = name(layout.name);
+
+  useEffect(() => {
+    const element = place.current;
+    if (!element) return undefined;
+    const axis: uPlot.Axis = {
+      stroke: colours.text,
+      grid: { stroke: colours.grid, width: 1 },
+      ticks: { show: false },
+      font: "11px system-ui",
+    };
+    const chart = new uPlot(
+      {
+        width: element.clientWidth,
+        height: HEIGHT,
+        scales: { x: { time: false, range: [0, 100] }, y: { range: [layout.scale[0], layout.scale[1]] } },
+        axes: [
+          { ...axis, size: 24, space: 40 },
+          { ...axis, size: 36, space: 28 },
+        ],
+        legend: { show: false },
+        cursor: { y: false, drag: { x: false, y: false }, points: { show: false } },
+        series: built.series,
+        bands: built.bands,
+        hooks: {
+          draw: [(drawn) => drawMarks(drawn, data.footOff, colours)],
+          setCursor: [
+            (moved) => {
+              const { left } = moved.cursor;
+              cursor.move(left == null || left < 0 ? null : moved.posToVal(left, "x"), moved);
+            },
+          ],
+        },
+      },
+      built.data,
+      element,
+    );
+    const leave = cursor.join(chart);
+    const observer = new ResizeObserver(() => chart.setSize({ width: element.clientWidth, height: HEIGHT }));
+    observer.observe(element);
+    return () => {
+      observer.disconnect();
+      leave();
+      chart.destroy();
+    };
+  }, [built, colours, cursor, data.footOff, layout]);
+
+  useEffect(() => {
+    const marked = data.lines.filter((line) => !line.faint);
+    return cursor.listen((percent) => {
+      if (!readout.current) return;
+      readout.current.textContent =
+        percent === null
+          ? ""
+          : marked.map((line) => `${line.label} ${number(line.mean[Math.round(percent)])}`).join("  ");
+    });
+  }, [cursor, data.lines, number]);
+
+  return (
+    <Paper withBorder p={6} component="figure" m={0}>
+      <Text component="figcaption" size="sm" fw={600}>
+        {title}{" "}
+        <Text span size="xs" c="dimmed">
+          {[down, up].filter(Boolean).join(" / ")} [{layout.unit}]
+        </Text>
+      </Text>
+      <div
+        ref={place}
+        role="img"
+        aria-label={t("curveOf", { name: title })}
+        style={{ minHeight: HEIGHT, cursor: onPick ? "pointer" : undefined }}
+        onClick={() => onPick?.(layout.name)}
+      />
+      <Text ref={readout} size="xs" mih={18} data-testid={`readout-${layout.name}`} />
+    </Paper>
+  );
+}

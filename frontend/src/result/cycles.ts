@@ -1,0 +1,54 @@
+/** Single cycles, cut out of the curves over time that stand beside the result. */
+import { useQuery } from "@tanstack/react-query";
+import { client, Problem, unwrap } from "../api/client";
+import type { ResultDocument, Side } from "./document";
+import { parseTable, resample, type Table } from "./table";
+
+export type Cycles = Readonly<Record<string, Partial<Record<Side, (number | null)[][]>>>>;
+
+async function table(resultId: string, name: string): Promise<Table | null> {
+  const params = { path: { result_id: resultId, name } };
+  try {
+    const text = await unwrap(
+      client.GET("/api/v1/results/{result_id}/files/{name}", {
+        params,
+        parseAs: "text",
+        // The names of files hold slashes that the route wants as they are.
+        pathSerializer: () => `/api/v1/results/${resultId}/files/${name.split("/").map(encodeURIComponent).join("/")}`,
+      }),
+    );
+    return parseTable(text as unknown as string);
+  } catch (error) {
+    if (error instanceof Problem && error.status === 404) return null;
+    throw error;
+  }
+}
+
+async function readCycles(resultId: string, document: ResultDocument): Promise<Cycles> {
+  const strides = document.strides?.strides ?? [];
+  const trials = [...new Set(strides.map((stride) => stride.trial))];
+  const angles: Record<string, Partial<Record<Side, (number | null)[][]>>> = {};
+  for (const trial of trials) {
+    const folder = trials.length > 1 ? `${trial}/` : "";
+    const read = await table(resultId, `${folder}angles.csv`);
+    if (!read) continue;
+    for (const stride of strides.filter((each) => each.trial === trial)) {
+      for (const curve of Object.keys(document.kinematics)) {
+        const sides = (angles[curve] ??= {});
+        (sides[stride.side] ??= []).push(resample(read, `${stride.side}_${curve}`, stride));
+      }
+    }
+  }
+  return angles;
+}
+
+/** All cycles of the angles; null until they are read, or while they are not wanted. */
+export function useCycles(resultId: string, document: ResultDocument, wanted: boolean): Cycles | null {
+  const cycles = useQuery({
+    queryKey: ["cycles", resultId],
+    queryFn: () => readCycles(resultId, document),
+    enabled: wanted,
+    staleTime: Infinity,
+  });
+  return wanted ? (cycles.data ?? null) : null;
+}

@@ -1,0 +1,102 @@
+import { Anchor, Badge, Group, Paper, Stack, Text, Title } from "@mantine/core";
+import { useQuery } from "@tanstack/react-query";
+import { Link } from "wouter";
+import { useAccount } from "../account/Account";
+import { client, unwrap, type Schemas } from "../api/client";
+import { ErrorNote } from "../app/ErrorNote";
+import { useI18n } from "../i18n/I18n";
+import { JobCard } from "../jobs/JobCard";
+import { BodyParameters } from "./BodyParameters";
+import { RecordingCard } from "./RecordingCard";
+import { RunPanel } from "./RunPanel";
+import { Upload } from "./Upload";
+
+const LOOK_AGAIN_MS = 2_000;
+
+export default function VisitPage({ id }: { id: string }) {
+  const { t, date } = useI18n();
+  const { may } = useAccount();
+  const path = { session_id: id };
+  const visit = useQuery({
+    queryKey: ["visit", id],
+    queryFn: () => unwrap(client.GET("/api/v1/sessions/{session_id}", { params: { path } })),
+  });
+  const recordings = useQuery({
+    queryKey: ["recordings", id],
+    queryFn: () =>
+      unwrap(client.GET("/api/v1/sessions/{session_id}/recordings", { params: { path, query: { limit: 100 } } })),
+    refetchInterval: ({ state }) => (state.data?.items.some((each) => !each.inspection) ? LOOK_AGAIN_MS : false),
+  });
+  const jobs = useQuery({
+    queryKey: ["jobs", { session_id: id }],
+    queryFn: () =>
+      unwrap(client.GET("/api/v1/analyses", { params: { query: { session_id: id, kind: "analyse", limit: 20 } } })),
+  });
+  if (!visit.data) return <ErrorNote error={visit.error} />;
+  const files = recordings.data?.items ?? [];
+  return (
+    <Stack maw={1100} mx="auto">
+      <div>
+        <Anchor component={Link} href={`/patients/${visit.data.patient_id}`}>
+          {t("patient")}
+        </Anchor>
+        <Group>
+          <Title order={1}>{t("visitOn", { date: date(visit.data.visited_on) })}</Title>
+          {visit.data.stage !== "none" && <Badge>{t(visit.data.stage === "before" ? "before" : "after")}</Badge>}
+        </Group>
+        <Text c="dimmed">{[visit.data.condition, visit.data.treatment].filter(Boolean).join(" · ")}</Text>
+      </div>
+      <Title order={2}>{t("recordings")}</Title>
+      {may("patients:write") && <Upload visitId={id} />}
+      <ErrorNote error={recordings.error} />
+      {files.map((recording) => (
+        <RecordingCard key={recording.id} recording={recording} />
+      ))}
+      {files.length > 0 && (
+        <>
+          <BodyParameters visitId={id} recordings={files} />
+          {may("analyses:run") && <RunPanel visitId={id} recordings={files} />}
+        </>
+      )}
+      <Analyses jobs={jobs.data?.items ?? []} />
+      {Object.keys(visit.data.examination).length > 0 && <Examination entries={visit.data.examination} />}
+    </Stack>
+  );
+}
+
+function Analyses({ jobs }: { jobs: readonly Schemas["Job"][] }) {
+  const { t } = useI18n();
+  if (jobs.length === 0) return null;
+  return (
+    <>
+      <Title order={2}>{t("analyses")}</Title>
+      {jobs.map((job) => (
+        <JobCard key={job.id} job={job} />
+      ))}
+    </>
+  );
+}
+
+function words(value: unknown): string {
+  if (Array.isArray(value)) return value.map(words).join("; ");
+  if (value !== null && typeof value === "object") {
+    return Object.entries(value)
+      .map(([name, each]) => `${name.replaceAll("_", " ")} ${words(each)}`)
+      .join(", ");
+  }
+  return String(value);
+}
+
+function Examination({ entries }: { entries: Readonly<Record<string, unknown>> }) {
+  const { t, name } = useI18n();
+  return (
+    <Paper withBorder p="md">
+      <Title order={2}>{t("examination")}</Title>
+      {Object.entries(entries).map(([part, value]) => (
+        <Text key={part}>
+          <b>{name(part)}</b>: {words(value)}
+        </Text>
+      ))}
+    </Paper>
+  );
+}
