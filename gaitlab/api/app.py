@@ -73,7 +73,8 @@ ROUTERS = (
 )
 S = HTTPStatus
 _PROBLEMS = documented(
-    S.UNAUTHORIZED, S.FORBIDDEN, S.NOT_FOUND, S.CONFLICT, S.REQUEST_ENTITY_TOO_LARGE, S.UNPROCESSABLE_ENTITY,
+    S.BAD_REQUEST, S.UNAUTHORIZED, S.FORBIDDEN, S.NOT_FOUND, S.CONFLICT, S.REQUEST_ENTITY_TOO_LARGE,
+    S.UNPROCESSABLE_ENTITY,
     S.TOO_MANY_REQUESTS, S.SERVICE_UNAVAILABLE,
 )  # fmt: skip
 
@@ -100,7 +101,7 @@ def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
     for router in ROUTERS:
         api.include_router(router)
     app.include_router(api)
-    app.include_router(operations.router)
+    app.include_router(operations.router, responses=documented(S.UNAUTHORIZED))
     if frontend.is_dir():
         app.mount("/", Frontend(frontend), name="frontend")
     add_handlers(app)

@@ -25,7 +25,11 @@ BINARY = {"schema": {"type": "string", "format": "binary"}}
 
 def content(*media_types: str) -> dict[int | str, dict[str, Any]]:
     """Entry of the OpenAPI document for an answer that is a file."""
-    return {200: {"description": "The file.", "content": {kind: BINARY for kind in media_types}}}
+    return {200: {"description": "The file.", "content": {kind: _schema(kind) for kind in media_types}}}
+
+
+def _schema(media_type: str) -> dict[str, Any]:
+    return {"schema": {"type": "object"}} if media_type.endswith("json") else BINARY
 
 
 def body_of(media_type: str = "application/octet-stream") -> dict[str, Any]:

@@ -144,6 +144,10 @@ class Viewers:
         found = self._running.get(viewer_id)
         return found if found is not None and found.owner == owner else None
 
+    def count_of(self, user_id: UUID) -> int:
+        """Number of sessions of a user."""
+        return sum(1 for each in self._running.values() if each.owner.user_id == user_id)
+
     def close_session(self, web_session_id: UUID) -> None:
         """End the sessions of a browser that signs out; may be called from any thread."""
         if self._loop is not None:
@@ -158,7 +162,7 @@ class Viewers:
         await run_in_threadpool(shutil.rmtree, viewer.folder, True)
 
     def _check_limits(self, owner: Owner) -> None:
-        mine = sum(1 for each in self._running.values() if each.owner.user_id == owner.user_id)
+        mine = self.count_of(owner.user_id)
         mine += self._opening.get(owner.user_id, 0)
         if mine >= self._limits.per_user:
             raise TooManyAttempts(f"you have {mine} 3D sessions open, as many as are allowed: close one", 1.0)

@@ -123,7 +123,9 @@ class NewNorms(_NewJob):
     name: Word
     source: Line = "own laboratory"
     licence: Line = "own data of the laboratory"
-    ages: tuple[float, float] | None = Field(default=None, description="Youngest and oldest [years].")
+    ages: Annotated[Sequence[float], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="Youngest and oldest [years]."
+    )
     speed_edges: Sequence[Annotated[float, Field(gt=0, le=10)]] = Field(default=(), max_length=20)
 
 
@@ -357,8 +359,8 @@ class About(Output):
     criteria: Sequence[str]
     default_criteria: Sequence[str]
     curves: Sequence[str]
-    body_parameters: Mapping[str, tuple[float, float, str]] = Field(
-        description="Lowest, highest plausible value, unit."
+    body_parameters: Mapping[str, Sequence[float | str]] = Field(
+        description="Lowest plausible value, highest, unit.", examples=[{"mass": [1.0, 500.0, "kg"]}]
     )
     norms: Sequence[str]
     largest_recording: int
