@@ -9,6 +9,7 @@ ENV PATH=/opt/gaitlab/venv/bin:$PATH OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 WORKDIR /source
 COPY pyproject.toml constraints.txt README.md LICENSE ./
 COPY data data
+COPY frontend frontend
 COPY gaitlab gaitlab
 RUN pip install --no-cache-dir --disable-pip-version-check -c constraints.txt '.[server,parquet]'
 # The derivatives of the walk are compiled here: an analysis finds them and the image needs no compiler.

@@ -10,7 +10,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-postgres check format evidence wheel clean
+.PHONY: help demo test test-slow test-postgres check format evidence frontend serve-demo test-pages wheel clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
@@ -40,6 +40,15 @@ format: $(VENV)/.installed-dev ## rewrite the sources in the house's format
 
 evidence: $(VENV)/.installed-dev ## measure every "Must hold" line (ONLY=word: some) into benchmarks/evidence/*.csv
 	PYTHONPATH=tests $(BIN)/python benchmarks/evidence.py $(ONLY)
+
+frontend: $(VENV)/.installed-dev ## build the web pages; Node comes as a wheel
+	$(BIN)/python frontend/build_frontend.py
+
+serve-demo: frontend ## run the web application on out/serve; drop data/demo_cp_child into a visit
+	$(BIN)/gaitlab serve --data-dir out/serve
+
+test-pages: frontend ## logic of the web pages; `make test-slow` drives them in a real Chromium
+	$(BIN)/python frontend/build_frontend.py test
 
 wheel: $(VENV)/.installed-dev ## build dist/*.whl, demo recordings included
 	$(BIN)/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir dist .
