@@ -77,6 +77,8 @@ function drawMarks(chart: uPlot, footOff: PanelData["footOff"], colours: Colours
   const { ctx, bbox } = chart;
   ctx.save();
   ctx.lineWidth = devicePixelRatio;
+  // The last line drawn may have been dashed.
+  ctx.setLineDash([]);
   const zero = chart.valToPos(0, "y", true);
   ctx.strokeStyle = colours.text;
   ctx.globalAlpha = 0.5;
