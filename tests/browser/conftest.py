@@ -8,7 +8,7 @@ from web_world import PASSWORD, running_world
 from gaitlab.api.pages import FRONTEND
 from gaitlab.storage.models import Role
 
-WAIT_MS = 60_000
+WAIT_MS = 20_000
 
 
 @pytest.fixture(scope="session")
@@ -65,6 +65,6 @@ def sign_in(page, login):
     """Type name and password."""
     page.goto("/")
     page.get_by_label("Login").fill(login)
-    page.get_by_label("Password", exact=True).fill(PASSWORD)
+    page.locator("input[type=password]").fill(PASSWORD)
     page.get_by_role("button", name="Sign in").click()
     page.get_by_role("heading", name="Patients").wait_for()
