@@ -3,12 +3,15 @@
 import itertools
 import json
 import socket
+import subprocess
+import sys
 import tempfile
 import threading
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, timedelta
 from pathlib import Path
+from types import SimpleNamespace
 from uuid import UUID, uuid4
 
 import httpx
@@ -20,6 +23,8 @@ from gaitlab.api.app import create_app
 from gaitlab.api.passwords import hash_password
 from gaitlab.api.permissions import Permission
 from gaitlab.api.tokens import API, new_token
+from gaitlab.storage.database import Database
+from gaitlab.storage.files import open_store
 from gaitlab.storage.models import (
     Access,
     ApiToken,
@@ -249,3 +254,24 @@ def running_world(data_dir, frontend=None, **settings):
         world = World(app, client)
         yield world
         world.close()
+
+
+@contextmanager
+def world_in_a_process(data_dir):
+    """As `running_world`, but the web application is a process of its own; also yields that process."""
+    url = url_of(new_database(template()))
+    script = Path(__file__).parent / "served_world.py"
+    command = [sys.executable, str(script), str(data_dir), url]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+        try:
+            address = process.stdout.readline().strip()
+            settings = Settings(data_dir=data_dir, database_url=url)
+            services = SimpleNamespace(settings=settings, database=Database.open(url), files=open_store(settings))
+            app = SimpleNamespace(state=SimpleNamespace(services=services))
+            with httpx.Client(base_url=address, timeout=120.0) as client:
+                world = World(app, client)
+                yield world, process
+                world.close()
+            services.database.close()
+        finally:
+            process.terminate()

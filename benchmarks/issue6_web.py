@@ -1,0 +1,118 @@
+"""Issue 6, lines 3 and 4: memory of a large upload, browsing under load beside a solve, ten 3D sessions."""
+
+import asyncio
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import numpy as np
+from registry import ROOT, Row, measurement
+from web_world import World, world_in_a_process
+from websockets.asyncio.client import connect
+
+from gaitlab.storage.models import Role
+
+USERS, RATE, SECONDS = 50, 100.0, 60.0
+"""People browsing, requests per second of all together, duration [s]."""
+NICENESS = "10"
+"""As the worker gives to its processes."""
+SESSIONS, LOOK = 10, 20.0
+SOLVE = ("analyse", str(ROOT / "data/demo_able_bodied_child/walk1.c3d"), "--processes", "1")
+SOLVE += ("--static", str(ROOT / "data/demo_able_bodied_child/static.c3d"))
+
+
+def _pages(case: object) -> tuple[str, ...]:
+    """What a person who reads results asks for."""
+    ids = case.ids  # type: ignore[attr-defined]
+    return (
+        "/api/v1/patients",
+        f"/api/v1/patients/{ids['patient_id']}",
+        f"/api/v1/patients/{ids['patient_id']}/sessions",
+        f"/api/v1/results?session_id={ids['session_id']}",
+        f"/api/v1/results/{ids['result_id']}",
+        f"/api/v1/results/{ids['result_id']}/document",
+    )
+
+
+async def _browse(world: World, rate: float, seconds: float) -> tuple[list[float], int]:
+    """Seconds of each answer, and how many were no answers; requests leave at fixed times, whatever comes back."""
+    token = world.as_role(Role.CLINICIAN)
+    pages = _pages(world.case)
+    limits = httpx.Limits(max_connections=USERS, max_keepalive_connections=USERS)
+    took: list[float] = []
+    failed = 0
+    async with httpx.AsyncClient(base_url=world.client.base_url, headers=token, limits=limits, timeout=30.0) as client:
+
+        async def one(number: int, due: float) -> None:
+            nonlocal failed
+            await asyncio.sleep(max(due - time.perf_counter(), 0.0))
+            answer = await client.get(pages[number % len(pages)])
+            took.append(time.perf_counter() - due)
+            failed += answer.status_code != 200
+
+        start = time.perf_counter() + 0.5
+        await asyncio.gather(*(one(number, start + number / rate) for number in range(int(rate * seconds))))
+    return took, failed
+
+
+@measurement(issue=6, line=4)
+def browsing_beside_a_solve() -> Iterator[Row]:
+    folder = Path(tempfile.mkdtemp(prefix="gaitlab-load-"))
+    gaitlab = str(Path(sys.executable).parent / "gaitlab")
+    with world_in_a_process(folder) as (world, _):
+        asyncio.run(_browse(world, 20.0, 5.0))  # caches and connections, as after the first minute of a day
+        command = [gaitlab, *SOLVE, "--out", str(folder / "solve")]
+        with subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=_step_back
+        ) as solve:
+            took, failed = asyncio.run(_browse(world, RATE, SECONDS))
+            running = solve.poll() is None
+            solve.terminate()
+    subject = f"{USERS} connections, {RATE:g} requests/s, {SECONDS:g} s"
+    yield Row(
+        quantity="answers, 50 %", value=float(np.percentile(took, 50) * 1e3), limit="", unit="ms", subject=subject
+    )
+    yield Row(
+        quantity="answers, 99 %", value=float(np.percentile(took, 99) * 1e3), limit="<= 100", unit="ms", subject=subject
+    )
+    yield Row(quantity="requests without an answer", value=failed, limit="<= 0", unit="", subject=subject)
+    yield Row(quantity="solve still running at the end", value=float(running), limit=">= 1", unit="", subject=subject)
+
+
+async def _updates(address: str, token: dict[str, str]) -> float:
+    """Messages per second that one playing 3D session sends through the proxy."""
+    async with httpx.AsyncClient(base_url=address, headers=token, timeout=120.0) as client:
+        opened = (await client.post(f"/api/v1/results/{token['result']}/viewer")).json()
+    socket = address.replace("http", "ws")
+    headers = {"Authorization": token["Authorization"]}
+    async with (
+        connect(socket + opened["control"], additional_headers=headers) as control,
+        connect(
+            socket + opened["url"].rstrip("/"), additional_headers=headers, subprotocols=["viser-v1.1.1"], max_size=None
+        ) as scene,
+    ):
+        await control.send('{"play": true}')
+        await asyncio.sleep(3.0)
+        end, count = time.perf_counter() + LOOK, 0
+        while time.perf_counter() < end:
+            await scene.recv()
+            count += 1
+    return count / LOOK
+
+
+@measurement(issue=6, line=4)
+def ten_viewer_sessions() -> Iterator[Row]:
+    with world_in_a_process(Path(tempfile.mkdtemp(prefix="gaitlab-viewers-"))) as (world, _):
+        token = {**world.as_role(Role.CLINICIAN), "result": world.case.ids["result_id"]}
+
+        async def all_of_them() -> list[float]:
+            address = str(world.client.base_url).rstrip("/")
+            return await asyncio.gather(*(_updates(address, token) for _ in range(SESSIONS)))
+
+        rates = asyncio.run(all_of_them())
+    subject = f"{SESSIONS} sessions, {LOOK:g} s"
+    yield Row(quantity="updates/s of the slowest session", value=min(rates), limit=">= 30", unit="1/s", subject=subject)
