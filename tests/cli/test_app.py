@@ -7,7 +7,10 @@ import gaitlab as package
 from gaitlab.cli.app import app
 
 README = Path(__file__).parents[2] / "README.md"
-COMMANDS = ("analyse", "compare", "inspect", "view", "schema", "demo", "demo-data", "predict")
+COMMANDS = (
+    "analyse", "backup", "compare", "demo", "demo-data", "doctor", "export", "inspect", "key", "openapi", "predict",
+    "restore", "schema", "serve", "view", "worker",
+)  # fmt: skip
 
 
 def test_version(gaitlab):
