@@ -3,7 +3,7 @@ import { problemOf } from "../src/api/client";
 import { compareCells } from "../src/compare/compareCells";
 import { fill } from "../src/i18n/fill";
 import { advance, NOTHING, secondsLeft } from "../src/jobs/progress";
-import { percentAt, strideOf, timeAt } from "../src/result/cycle";
+import { percentAt, strideOf, stridesIn, timeAt, trialIn } from "../src/result/cycle";
 import { parseTable, resample } from "../src/result/table";
 import { changesOf } from "../src/result/changes";
 import { foundIn } from "../src/visit/inspection";
@@ -29,6 +29,13 @@ describe("cycle", () => {
     expect(percentAt(strides, "walk", "left", 4.5)).toBeNull();
     expect(percentAt(strides, "walk", "right", 2.5)).toBeNull();
   });
+});
+
+it("makes strides of foot strikes where a result lists none", () => {
+  const strike = (side: "left" | "right", time_s: number) => ({ side, kind: "foot_strike", time_s, trial: "walk" });
+  const strides = stridesIn({ events: [strike("left", 2), strike("right", 1.5), strike("left", 1)] });
+  expect(strides).toEqual([{ trial: "walk", side: "left", start_s: 1, end_s: 2 }]);
+  expect(trialIn(strides, "result")).toBe("walk");
 });
 
 describe("table", () => {

@@ -5,6 +5,7 @@ import { PALETTES, useColours, usePalette, type Palette } from "../app/colours";
 import { useI18n, type Key } from "../i18n/I18n";
 import { CyclePanel, type Line, type PanelData } from "./CyclePanel";
 import type { Cursor } from "./cursor";
+import { stridesIn } from "./cycle";
 import { useCycles, type Cycles } from "./cycles";
 import { SIDES, type Band, type CurveSides, type ResultDocument } from "./document";
 import { KINEMATICS, KINETICS, type PanelLayout } from "./panels";
@@ -23,6 +24,7 @@ export function CurvesTab({ resultId, document, cursor }: Props) {
   const [in3d, scene] = useDisclosure();
   const [picked, setPicked] = useState<PanelLayout | null>(null);
   const cycles = useCycles(resultId, document, view === "consistency");
+  const strides = useMemo(() => stridesIn(document), [document]);
   const source = useMemo(() => panelSource(document, cycles, t), [document, cycles, t]);
   const panels = (layouts: readonly (PanelLayout | null)[]) =>
     layouts.map((layout, index) =>
@@ -85,7 +87,7 @@ export function CurvesTab({ resultId, document, cursor }: Props) {
             </>
           )}
         </Stack>
-        {in3d && <ViewPane resultId={resultId} strides={document.strides?.strides ?? []} cursor={cursor} />}
+        {in3d && <ViewPane resultId={resultId} strides={strides} cursor={cursor} />}
       </div>
       <ValuesModal layout={picked} data={picked && source(picked.name)} onClose={() => setPicked(null)} />
     </Stack>

@@ -6,7 +6,7 @@ import { client, changeHeaders, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import type { Cursor } from "./cursor";
-import { percentAt, strideOf, timeAt } from "./cycle";
+import { percentAt, strideOf, timeAt, trialIn } from "./cycle";
 import { SIDES, type Side, type Stride } from "./document";
 
 interface Props {
@@ -84,11 +84,11 @@ function Scene({ viewer, strides, cursor }: { viewer: Schemas["Viewer"]; strides
       // A scene that stands only echoes what the cursor asked for.
       if (!told.playing) return;
       following.current = true;
-      cursor.move(percentAt(strides, told.trial, side, told.time), null);
+      cursor.move(percentAt(strides, trialIn(strides, told.trial), side, told.time), null);
       following.current = false;
     };
     const leave = cursor.listen((percent) => {
-      const stride = strideOf(strides, trial.current, side);
+      const stride = strideOf(strides, trialIn(strides, trial.current), side);
       if (following.current || percent === null || !stride) return;
       tell(opened, { seek: timeAt(stride, percent) });
     });

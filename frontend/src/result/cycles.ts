@@ -1,6 +1,7 @@
 /** Single cycles, cut out of the curves over time that stand beside the result. */
 import { useQuery } from "@tanstack/react-query";
 import { client, Problem, unwrap } from "../api/client";
+import { stridesIn } from "./cycle";
 import type { ResultDocument, Side } from "./document";
 import { parseTable, resample, type Table } from "./table";
 
@@ -25,7 +26,7 @@ async function table(resultId: string, name: string): Promise<Table | null> {
 }
 
 async function readCycles(resultId: string, document: ResultDocument): Promise<Cycles> {
-  const strides = document.strides?.strides ?? [];
+  const strides = stridesIn(document);
   const trials = [...new Set(strides.map((stride) => stride.trial))];
   const angles: Record<string, Partial<Record<Side, (number | null)[][]>>> = {};
   for (const trial of trials) {

@@ -80,6 +80,7 @@ export interface SideSpatiotemporal {
 
 export interface ResultDocument {
   version: string;
+  events: { side: Side; kind: string; time_s: number; trial: string }[];
   inputs: { name: string; role: string }[];
   spatiotemporal: { left: SideSpatiotemporal | null; right: SideSpatiotemporal | null };
   kinematics: Record<string, CurveSides>;
