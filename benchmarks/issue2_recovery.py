@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import partial
 from multiprocessing import get_context
 
 import numpy as np
@@ -17,7 +18,7 @@ from gaitlab.mocap.c3d import read_c3d
 from gaitlab.pipelines.analyse import analyse
 from gaitlab.pipelines.bundled import DEMO_CHILDREN, demo_folder
 from gaitlab.pipelines.options import AnalysisOptions
-from gaitlab.pipelines.weights import usable_strides
+from gaitlab.pipelines.weights import frames_of, usable_strides
 from gaitlab.walking.explanation import ExplanationSettings, explain
 
 SEEDS, NOISE = 40, 5e-4  # m, of every marker coordinate
@@ -63,7 +64,7 @@ def recovered(case: CASE) -> tuple[np.ndarray, float, np.ndarray]:
     trial = analyse(read_c3d(folder / "static.c3d"), [walk], AnalysisOptions(weights=False)).trials[0]
     request = request_of(trial)
     _, stride = usable_strides(request)[0][0]
-    frames = request.frames.of_stride(stride)
+    frames = partial(frames_of, request, stride)
     try:
         estimate = explain(stride, ExplanationSettings(single_criteria=False), frames=frames).estimate
     except NotConverged:

@@ -1,6 +1,6 @@
 """The first stride of an analysed trial or of a bundled demo walk, ready to be tracked."""
 
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.bundled import demo_folder
@@ -23,7 +23,7 @@ def request_of(trial, landing="soft"):
         events=trial.events,
         subject=trial.subject,
         q=trial.motion.q,
-        frames=single_frames(trial.subject, trial.recording, trial.kinematics.heading, trial.motion),
+        frames=partial(single_frames, trial.subject, trial.recording, trial.kinematics.heading, trial.motion),
         heading=trial.kinematics.heading,
         criteria=AnalysisOptions().criteria,
         seed=0,

@@ -83,6 +83,7 @@ class Service:
     def database(self):
         """Wait for the database, and open it."""
         while True:
+            database = None
             try:
                 if self.server.pid() is None:
                     raise StorageError("not yet")
@@ -92,6 +93,8 @@ class Service:
                     session.scalar(select(func.count()).select_from(Job))
                 return database
             except (StorageError, DBAPIError, OSError):
+                if database is not None:
+                    database.close()
                 time.sleep(0.2)
 
     def victim(self, kind):

@@ -143,10 +143,10 @@ async def _read(descriptor: int, progress: Callable[[Mapping[str, Any]], None]) 
     reader = asyncio.StreamReader()
     with os.fdopen(descriptor, "rb") as pipe:
         transport, _ = await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), pipe)
-        while line := await reader.readline():
-            with contextlib.suppress(json.JSONDecodeError):
-                progress(json.loads(line))
-        transport.close()
+        with contextlib.closing(transport):
+            while line := await reader.readline():
+                with contextlib.suppress(json.JSONDecodeError):
+                    progress(json.loads(line))
 
 
 def _kill_group(group: int) -> None:

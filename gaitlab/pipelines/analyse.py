@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -178,7 +179,7 @@ def _request(
         events=events,
         subject=subject,
         q=motion.q,
-        frames=single_frames(subject, walk.recording, walk.kinematics.heading, motion),
+        frames=cache(partial(single_frames, subject, walk.recording, walk.kinematics.heading, motion)),
         heading=walk.kinematics.heading,
         criteria=options.criteria,
         seed=options.seed,

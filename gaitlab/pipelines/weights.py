@@ -1,8 +1,9 @@
 """From measured coordinates to the weights of the criteria: the seam between gait analysis and optimal control."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from time import perf_counter
 
 import msgspec
@@ -44,8 +45,8 @@ class WeightsRequest:
     subject: SubjectModel
     q: np.ndarray
     """Measured coordinates, gait frame [m, rad], shape (n_frames, n_q); NaN where markers are missing."""
-    frames: MeasuredFrames
-    """What the markers of single frames say."""
+    frames: Callable[[], MeasuredFrames]
+    """Tells what the markers of single frames say, where the search needs to know."""
     heading: float
     """Direction of the gait frame's x axis in the laboratory [rad]."""
     criteria: tuple[str, ...]
@@ -138,6 +139,11 @@ def usable_strides(request: WeightsRequest) -> tuple[list[tuple[Cycle, MeasuredS
     return _apart(usable), tuple(skipped)
 
 
+def frames_of(request: WeightsRequest, stride: MeasuredStride) -> MeasuredFrames:
+    """What the markers of a stride's single frames say."""
+    return request.frames().of_stride(stride)
+
+
 def _apart(strides: list[tuple[Cycle, MeasuredStride]]) -> list[tuple[Cycle, MeasuredStride]]:
     """The first stride, then the others, those that overlap it least first."""
     first = strides[0][0]
@@ -170,7 +176,7 @@ def _explain_all(
         begin = perf_counter()
         try:
             # The first stride carries the comparison with other weights; the others are there for the spread.
-            frames = request.frames.of_stride(stride)
+            frames = partial(frames_of, request, stride)
             found = explain(stride, replace(settings, single_criteria=not explained), report, workers, frames)
         except NotConverged as error:
             failed.append(f"{where}: {error}")

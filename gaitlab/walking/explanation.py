@@ -25,6 +25,9 @@ Report = Callable[[str, int, float], None]
 """Called with the stage in words, the iteration and its residual (not a number where a stage counts arcs solved);
 cancels by raising `errors.Cancelled`."""
 
+FramesOfStride = Callable[[], MeasuredFrames]
+"""Gives the unsmoothed frames of a stride; called only where the search needs them, as few walks do."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ExplanationSettings:
@@ -70,7 +73,7 @@ def explain(
     settings: ExplanationSettings | None = None,
     report: Report | None = None,
     workers: Workers | None = None,
-    frames: MeasuredFrames | None = None,
+    frames: FramesOfStride | None = None,
 ) -> Explanation:
     """Track a stride and find the weights of its criteria, on one processor or with the help of workers.
 
@@ -92,12 +95,12 @@ def explain_tracked(
     settings: ExplanationSettings | None = None,
     report: Report | None = None,
     workers: Workers | None = None,
-    frames: MeasuredFrames | None = None,
+    frames: FramesOfStride | None = None,
 ) -> Explanation:
     """Find the weights of the criteria of a tracked stride. Raises `errors.NotConverged` as `explain` does."""
     settings = settings or ExplanationSettings()
     if frames is not None and tracked.rms <= settings.explained_within:
-        found = _explain_with_states(tracked, frames, settings, report, workers)
+        found = _explain_with_states(tracked, frames(), settings, report, workers)
         if found is not None:
             return found
     level = WalkLevel(tracked, settings.identification, workers)

@@ -118,7 +118,6 @@ class JointSearch:
             iterations, lower_iterations = iterations + run.iterations, lower_iterations + run.lower_iterations
             moved = float(np.max(np.abs(run.state.theta - theta)))
             settled = run.converged and moved <= self.tol_round
-            theta = run.state.theta
             if settled or not run.converged:
                 break
             run = run.renewed()

@@ -23,11 +23,12 @@ class Follower:
     def __init__(self, until="", verdict=Verdict.CANCEL):
         self.steps, self.until, self.verdict = [], until, verdict
         self.processes, self.asked_at = [], None
+        self.others = psutil.Process().children(recursive=True)
 
     async def ask(self):
         if self.until not in [step["stage"] for step in self.steps]:
             return Verdict.GO_ON
-        self.processes = psutil.Process().children(recursive=True)
+        self.processes = [each for each in psutil.Process().children(recursive=True) if each not in self.others]
         self.asked_at = time.monotonic()
         return self.verdict
 

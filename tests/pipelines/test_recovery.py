@@ -6,6 +6,7 @@ durations, contacts and the motion within the arcs are all that the search for t
 
 import json
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from gaitlab.pipelines.demo_data import WALKS
 from gaitlab.pipelines.demo_patterns import GRID, demo_patterns
 from gaitlab.pipelines.demo_subject import demo_subject
 from gaitlab.pipelines.demo_tracking import pattern_stages
-from gaitlab.pipelines.weights import usable_strides
+from gaitlab.pipelines.weights import frames_of, usable_strides
 from gaitlab.walking.arcs import part_of_stages
 from gaitlab.walking.explanation import ExplanationSettings, explain
 from gaitlab.walking.identification import IdentificationSettings, WalkLevel, arc_boundaries
@@ -58,7 +59,7 @@ def level_of(truth, stride):
 def test_known_weights_come_back_from_the_recording(child):
     request = demo_request(child)
     _, stride = usable_strides(request)[0][0]
-    frames = request.frames.of_stride(stride)
+    frames = partial(frames_of, request, stride)
     found = explain(stride, ExplanationSettings(single_criteria=False), frames=frames)
     assert found.states_estimated and found.is_certified
     truth = json.loads((demo_folder(child) / "truth.json").read_text())["walks"]["walk1"]
