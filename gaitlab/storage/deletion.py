@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import CompoundSelect, delete, select, text, union
+from sqlalchemy import CompoundSelect, Select, delete, select, text, union
 from sqlalchemy.orm import Session
 
 from ..errors import NotFound
@@ -45,6 +45,29 @@ class Deleted:
     jobs: int
     digests: tuple[str, ...]
     """Contents that were referred to; others may still use some of them."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Doomed:
+    """Visits and jobs that are deleted, and what hangs on them: the same rows for their contents and for themselves."""
+
+    sessions: tuple[UUID, ...]
+    jobs: tuple[UUID, ...]
+
+    @property
+    def uploads(self) -> Select[tuple[UUID]]:
+        return select(Upload.id).where(Upload.session_id.in_(self.sessions))
+
+    @property
+    def results(self) -> Select[tuple[UUID]]:
+        return select(Result.id).where(Result.job_id.in_(self.jobs))
+
+    @property
+    def reports(self) -> Select[tuple[UUID]]:
+        """Those of other visits on one of the results included."""
+        return select(ReportVersion.id).where(
+            ReportVersion.session_id.in_(self.sessions) | ReportVersion.result_id.in_(self.results)
+        )
 
 
 def delete_patient(database: Database, store: FileStore, patient_id: UUID, actor: Actor) -> Deleted:
@@ -95,22 +118,18 @@ def _deed(kind: str, object_id: str, patient_id: UUID, deleted: Deleted) -> Deed
 
 def _delete_sessions(session: Session, sessions: Sequence[UUID], more_jobs: Iterable[UUID]) -> Deleted:
     recordings = list(session.scalars(select(Recording.id).where(Recording.session_id.in_(sessions))))
-    uploads = select(Upload.id).where(Upload.session_id.in_(sessions))
     jobs = {*more_jobs, *session.scalars(select(Job.id).where(Job.session_id.in_(sessions)))}
-    digests = tuple(row[0] for row in session.execute(_contents(sessions, list(jobs))))
-    results = select(Result.id).where(Result.job_id.in_(jobs))
-    reports = select(ReportVersion.id).where(
-        ReportVersion.session_id.in_(sessions) | ReportVersion.result_id.in_(results)
-    )
+    doomed = _Doomed(sessions=tuple(sessions), jobs=tuple(jobs))
+    digests = tuple(row[0] for row in session.execute(_contents(doomed)))
     for statement in (
-        delete(ReportSignature).where(ReportSignature.report_id.in_(reports)),
-        delete(ReportVersion).where(ReportVersion.id.in_(reports)),
-        delete(CohortMember).where(CohortMember.result_id.in_(results)),
-        delete(ResultFile).where(ResultFile.result_id.in_(results)),
-        delete(Result).where(Result.job_id.in_(jobs)),
+        delete(ReportSignature).where(ReportSignature.report_id.in_(doomed.reports)),
+        delete(ReportVersion).where(ReportVersion.id.in_(doomed.reports)),
+        delete(CohortMember).where(CohortMember.result_id.in_(doomed.results)),
+        delete(ResultFile).where(ResultFile.result_id.in_(doomed.results)),
+        delete(Result).where(Result.id.in_(doomed.results)),
         delete(JobPatient).where(JobPatient.job_id.in_(jobs)),
         delete(Job).where(Job.id.in_(jobs)),
-        delete(UploadChunk).where(UploadChunk.upload_id.in_(uploads)),
+        delete(UploadChunk).where(UploadChunk.upload_id.in_(doomed.uploads)),
         delete(Upload).where(Upload.session_id.in_(sessions)),
         delete(Attachment).where(Attachment.session_id.in_(sessions)),
         delete(Subject).where(Subject.session_id.in_(sessions)),
@@ -138,16 +157,16 @@ def _jobs_that_read(session: Session, visit: GaitSession) -> set[UUID]:
     return found
 
 
-def _contents(sessions: Sequence[UUID], jobs: Sequence[UUID]) -> CompoundSelect[Any]:
-    results = select(Result.id).where(Result.job_id.in_(jobs))
-    uploads = select(Upload.id).where(Upload.session_id.in_(sessions))
-    reports = ReportVersion.session_id.in_(sessions)
+def _contents(doomed: _Doomed) -> CompoundSelect[Any]:
+    """Contents that the rows refer to."""
+    sessions = doomed.sessions
+    reports = ReportVersion.id.in_(doomed.reports)
     return union(
         select(Recording.sha256).where(Recording.session_id.in_(sessions)),
         select(Attachment.sha256).where(Attachment.session_id.in_(sessions)),
-        select(UploadChunk.sha256).where(UploadChunk.upload_id.in_(uploads)),
+        select(UploadChunk.sha256).where(UploadChunk.upload_id.in_(doomed.uploads)),
         select(Subject.model_sha256).where(Subject.session_id.in_(sessions), Subject.model_sha256.is_not(None)),
-        select(ResultFile.sha256).where(ResultFile.result_id.in_(results)),
+        select(ResultFile.sha256).where(ResultFile.result_id.in_(doomed.results)),
         select(ReportVersion.html_sha256).where(reports, ReportVersion.html_sha256.is_not(None)),
         select(ReportVersion.pdf_sha256).where(reports, ReportVersion.pdf_sha256.is_not(None)),
     )

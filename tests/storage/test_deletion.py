@@ -18,6 +18,7 @@ from gaitlab.storage.models import (
     AuditEntry,
     Cohort,
     CohortMember,
+    GaitSession,
     Job,
     JobKind,
     JobPatient,
@@ -154,6 +155,24 @@ def test_a_visit_goes_with_what_was_computed_from_its_results(database, store):
         add_result(session, store, None, [visit.patient_id], inputs, b"norms")
     delete_session(database, store, visit.session_id, SYSTEM)
     assert rows(database) == {"patients": 1, "patient_identities": 1}
+
+
+def test_a_report_of_another_visit_goes_with_the_result_that_it_reports_on(database, store):
+    visit = fill(database, store)
+    with database.transaction() as session:
+        later = GaitSession(patient_id=visit.patient_id, visited_on=now().date())
+        page, pdf = store.put([b"page"]), store.put([b"pdf"])
+        for stored in (page, pdf):
+            refer(session, store, stored)
+        session.add(later)
+        session.flush()
+        result = session.scalars(select(Result)).one()
+        report = ReportVersion(session_id=later.id, number=1, result_id=result.id)
+        report.html_sha256, report.pdf_sha256 = page.sha256, pdf.sha256
+        session.add(report)
+    delete_session(database, store, visit.session_id, SYSTEM)
+    assert rows(database) == {"patients": 1, "patient_identities": 1, "sessions": 1}
+    assert list(store.names()) == []
 
 
 def test_an_unknown_patient_is_said(database, store):
