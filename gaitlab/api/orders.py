@@ -9,7 +9,7 @@ from sqlalchemy import select
 
 from ..errors import Conflict, InvalidRecording, InvalidRequest
 from ..jobs.queue import submit
-from ..jobs.request import JobInput, JobRequest
+from ..jobs.request import OWNER, JobInput, JobRequest
 from ..storage.models import (
     CohortMember,
     GaitSession,
@@ -99,7 +99,10 @@ def _order_analysis(call: Call, wanted: NewAnalysis) -> JobRequest:
     settings, norms = _analysis_settings(call, wanted.settings, age)
     if wanted.subject_id is not None:
         subject = visibility.part(call, Subject, wanted.subject_id, "analyse")
+        if visibility.patient_of(call, subject.session_id) != visit.patient_id:
+            raise Absent("subject of this patient", wanted.subject_id)
         settings["parameters"] = {**subject.parameters, **settings["parameters"]}
+        settings[OWNER] = str(subject.id)
     return _request(
         call,
         JobKind.ANALYSE,

@@ -22,6 +22,8 @@ QUEUES: Mapping[JobKind, str] = {
     JobKind.PREDICT: SOLVE,
 }
 """Queue of each kind, so that the look into an upload does not wait behind hours of computation."""
+OWNER = "subject_id"
+"""Setting that no computation reads: the row of body measurements that gains the job's model."""
 
 
 @dataclass(frozen=True, kw_only=True)

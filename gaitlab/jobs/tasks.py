@@ -25,7 +25,7 @@ from ..storage.settings import Settings
 from . import metrics
 from .claims import Claim, beat, claim, end, requeue
 from .computing_process import OUTCOME
-from .request import QUEUES, SOLVE, Work
+from .request import OWNER, QUEUES, SOLVE, Work
 from .supervision import PROCESS, Ended, Limits, Verdict, Watch, run_process
 
 Value = TypeVar("Value")
@@ -289,9 +289,10 @@ def _tell_owner(session: Session, job: Job, outcome: Mapping[str, Any], files: M
             )
         )
     model = next((files[name] for name in sorted(files) if Path(name).name == "model.urdf"), None)
-    if model is not None and "subject_id" in job.settings:
+    if model is not None and OWNER in job.settings:
+        # Other measurements than those of the row, or changed ones since, make another body.
         session.execute(
             update(Subject)
-            .where(Subject.id == UUID(job.settings["subject_id"]))
+            .where(Subject.id == UUID(job.settings[OWNER]), Subject.parameters == job.settings["parameters"])
             .values(model_sha256=model.sha256, version=Subject.version + 1)
         )

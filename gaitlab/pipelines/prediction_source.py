@@ -1,7 +1,7 @@
 """What `gaitlab analyse` leaves for `gaitlab predict`: the identified gait, and the constants of the direct model."""
 
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 
 import msgspec
 
@@ -42,16 +42,28 @@ def read_source(folder: Path, trial: str = "") -> PredictionSource:
     """
     if not folder.is_dir():
         raise InvalidRecording(f"{folder} is not a folder: give the --out folder of gaitlab analyse")
-    trials = {path.parent.name: path.parent for path in sorted(folder.glob(f"*/{FILE}"))}
-    if (folder / FILE).is_file():
-        trials = {folder.resolve().name: folder, **trials}
+    trials = trials_of(folder)
     if trial and trial not in trials:
         raise NotFound("trial with an identified gait", trial, trials)
-    chosen = trials[trial] if trial else next(iter(trials.values()), folder)
+    name = trial or next(iter(trials), "")
+    chosen = trials.get(name, folder)
     gait, path = read_gait(chosen / FILE), chosen / CALIBRATION
     try:
         calibration = msgspec.json.decode(path.read_bytes(), type=Calibration, dec_hook=decode_array)
     except (OSError, msgspec.MsgspecError) as error:
         raise InvalidRecording(f"{path} cannot be read ({error}): run 'gaitlab analyse' again") from error
     document = read_document(chosen / "result.json")
-    return PredictionSource(name=chosen.resolve().name, gait=gait, calibration=calibration, document=document)
+    return PredictionSource(name=name, gait=gait, calibration=calibration, document=document)
+
+
+def trials_of(folder: Path) -> dict[str, Path]:
+    """Folders with an identified gait by the names of their walks; of one walk it is the folder itself.
+
+    Raises:
+        InvalidRecording: the folder's result cannot be read.
+    """
+    trials = {path.parent.name: path.parent for path in sorted(folder.glob(f"*/{FILE}"))}
+    if not (folder / FILE).is_file():
+        return trials
+    walks = [PurePath(each.name).stem for each in read_document(folder / "result.json").inputs if each.role == "walk"]
+    return dict.fromkeys(walks[:1], folder) | trials

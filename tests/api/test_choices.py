@@ -4,12 +4,13 @@ from typing import get_args
 
 import pytest
 
-from gaitlab.api import choices
+from gaitlab.api import choices, quantities
 from gaitlab.inverse import leg_kinetics
 from gaitlab.pipelines import options
 from gaitlab.pipelines.references import bundled_norms
 from gaitlab.report import colours, pages
 from gaitlab.walking import contact_schedule, criteria
+from gaitlab.walking import quantities as walking_quantities
 
 
 @pytest.mark.parametrize(
@@ -34,3 +35,10 @@ def test_the_defaults_are_the_same():
 
 def test_bundled_norms_are_there():
     assert [bundled_norms(name).is_file() for name in get_args(choices.NormName) if name != "none"] == [True]
+
+
+def test_quantities_of_predictions_are_the_same():
+    known = walking_quantities.QUANTITIES.values()
+    assert {name: (q.unit, q.lowest, q.highest, q.relative_to) for name, q in quantities.QUANTITIES.items()} == {
+        q.name: (q.unit, q.lowest, q.highest, q.relative_to) for q in known
+    }

@@ -11,7 +11,7 @@ from gaitlab.pipelines.analyse import Sources, analyse_files
 from gaitlab.pipelines.bundled import demo_folder
 from gaitlab.pipelines.options import AnalysisOptions
 from gaitlab.pipelines.output import write_analysis
-from gaitlab.pipelines.prediction_source import write_source
+from gaitlab.pipelines.prediction_source import trials_of, write_source
 
 CHILD = "demo_able_bodied_child"
 
@@ -62,6 +62,10 @@ def test_a_folder_that_is_not_there(gaitlab, tmp_path):
 def test_a_trial_that_is_not_there(gaitlab, analysed, tmp_path):
     result = gaitlab("predict", analysed, "--trial", "walk9", "--out", tmp_path / "out")
     assert_refused(result, "walk9", "available")
+
+
+def test_the_only_trial_is_called_after_its_walk(analysed):
+    assert trials_of(analysed) == {"walk1": analysed}
 
 
 def test_quantities_are_listed(gaitlab):

@@ -12,10 +12,11 @@ from stored import make_visit
 
 from gaitlab.jobs.claims import claim, end
 from gaitlab.jobs.queue import cancel
+from gaitlab.jobs.request import OWNER
 from gaitlab.jobs.tasks import Runner, TryAgain, media_type
 from gaitlab.storage.audit import SYSTEM
 from gaitlab.storage.deletion import delete_patient
-from gaitlab.storage.models import Job, JobKind, JobStatus, Recording, Result, ResultFile, StoredFile
+from gaitlab.storage.models import Job, JobKind, JobStatus, Recording, Result, ResultFile, StoredFile, Subject
 from gaitlab.storage.settings import Settings
 
 
@@ -192,6 +193,18 @@ def test_an_inspection_reaches_the_recording(runner, database, store):
     assert job.status is JobStatus.SUCCEEDED
     assert recording.inspection == {"rows": [["frames", "3"]]}
     assert (recording.personal_entries, recording.version) == (["a name"], 2)
+
+
+@pytest.mark.parametrize(("changed", "gained"), [(False, True), (True, False)])
+def test_a_body_gains_the_model_unless_its_measurements_changed(runner, visit, database, changed, gained):
+    with database.transaction() as session:
+        subject = Subject(session_id=visit.session_id, parameters={"mass": 31 if changed else 30})
+        session.add(subject)
+        session.flush()
+        body = subject.id
+    run(runner, submit_job(database, visit, settings={"do": "model", "parameters": {"mass": 30.0}, OWNER: str(body)}))
+    with database.sessions() as session:
+        assert (session.get(Subject, body).model_sha256 is not None) is gained
 
 
 @pytest.mark.parametrize(

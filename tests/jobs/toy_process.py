@@ -49,6 +49,11 @@ def describe(work, progress):
     return outcome.Outcome(summary={"rows": [["frames", "3"]], "personal_entries": ["a name"]})
 
 
+def model(work, progress):
+    (work.out / "model.urdf").write_text("<robot/>")
+    return outcome.Outcome()
+
+
 def compute(work, progress):
     return globals()[work.settings.get("do", "succeed")](work, progress)
 

@@ -11,7 +11,7 @@ from ..dependencies import allowed
 from ..listing import page
 from ..permissions import Permission
 from ..schemas.forms import Page
-from ..schemas.work import AuditFilter, AuditLine
+from ..schemas.system import AuditFilter, AuditLine
 
 router = APIRouter(tags=["audit"])
 Auditor = Annotated[Call, allowed(Permission.AUDIT_READ)]

@@ -1,5 +1,6 @@
 """What this installation can do, and what it is doing."""
 
+from dataclasses import asdict
 from typing import Annotated, Any, get_args
 
 from fastapi import APIRouter, Request
@@ -18,7 +19,8 @@ from ..dependencies import allowed, services_of
 from ..files import CHUNK_LIMIT
 from ..orders import NORM_NAMES
 from ..permissions import Permission
-from ..schemas.work import About, SystemState
+from ..quantities import QUANTITIES
+from ..schemas.system import About, PredictionQuantity, SystemState
 
 router = APIRouter(tags=["system"])
 SignedIn = Annotated[Call, allowed(Permission.ACCOUNT)]
@@ -32,7 +34,7 @@ _WORKERS = text("SELECT id, last_heartbeat FROM procrastinate_workers ORDER BY i
 
 @router.get("/about")
 def get_about(request: Request, call: SignedIn) -> About:
-    """Criteria, curves, body parameters, norms and limits."""
+    """Criteria, curves, body parameters, quantities of predictions, norms and limits."""
     del call  # Only to be signed in.
     settings = services_of(request).settings
     return About(
@@ -41,6 +43,7 @@ def get_about(request: Request, call: SignedIn) -> About:
         default_criteria=DEFAULT_CRITERIA,
         curves=CURVES,
         body_parameters=PLAUSIBLE,
+        prediction_quantities={name: PredictionQuantity(**asdict(each)) for name, each in QUANTITIES.items()},
         norms=sorted(NORM_NAMES),
         largest_recording=settings.max_recording_bytes,
         largest_upload=settings.max_upload_bytes,

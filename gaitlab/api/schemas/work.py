@@ -5,8 +5,9 @@ from datetime import datetime
 from typing import Annotated, Any, Literal
 from uuid import UUID
 
-from pydantic import Field, StringConstraints
+from pydantic import AfterValidator, Field, StringConstraints
 
+from ...errors import NotFound
 from ...storage.models import JobKind, JobStatus
 from ..choices import (
     DEFAULT_CRITERIA,
@@ -18,6 +19,7 @@ from ..choices import (
     ReportPage,
     StaticOffsets,
 )
+from ..quantities import check_change
 from .forms import Edited, Input, Line, Output, Paging, Prose, Stored, Word
 from .patients import BodyParameters
 
@@ -67,7 +69,18 @@ class NewAnalysis(_NewJob):
     settings: AnalysisSettings = Field(default_factory=AnalysisSettings)
 
 
-Change = Annotated[str, StringConstraints(max_length=80, pattern=r"^[a-z_]+=[+-]?[0-9.eE+-]+%?$")]
+def _known(change: str) -> str:
+    try:
+        return check_change(change)
+    except NotFound as error:
+        raise ValueError(str(error)) from error
+
+
+Change = Annotated[
+    str,
+    StringConstraints(max_length=80, pattern=r"^[a-z_]+=[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?%?$"),
+    AfterValidator(_known),
+]
 
 
 class NewPrediction(_NewJob):
@@ -79,7 +92,8 @@ class NewPrediction(_NewJob):
     changes: Sequence[Change] = Field(
         default=(),
         max_length=100,
-        description="As `gaitlab predict --set`: name=value, or name=+10%; none: the identified gait itself.",
+        description="As `gaitlab predict --set`: name=value, or name=+10%; none: the identified gait itself. "
+        "GET /api/v1/about lists the names under prediction_quantities.",
         examples=[["speed=+10%", "left_ankle_orthosis=1"]],
     )
 
@@ -337,59 +351,3 @@ class Comparison(Output):
     baseline: str
     tables: Mapping[str, ComparisonTable]
     problems: Sequence[str] = Field(description="Why results were left out.")
-
-
-class SystemState(Output):
-    """What the service is doing."""
-
-    version: str
-    jobs: Mapping[JobStatus, int]
-    workers: Sequence[Mapping[str, Any]]
-    viewers: int
-    rows: Mapping[str, int] = Field(description="Number of rows by table.")
-    database_bytes: int
-    files: int
-    file_bytes: int
-
-
-class About(Output):
-    """What this installation can do."""
-
-    version: str
-    criteria: Sequence[str]
-    default_criteria: Sequence[str]
-    curves: Sequence[str]
-    body_parameters: Mapping[str, Sequence[float | str]] = Field(
-        description="Lowest plausible value, highest, unit.", examples=[{"mass": [1.0, 500.0, "kg"]}]
-    )
-    norms: Sequence[str]
-    largest_recording: int
-    largest_upload: int
-    chunk_size: int
-
-
-class AuditLine(Output):
-    """Who did what to which data."""
-
-    id: int
-    at: datetime
-    user_id: UUID | None
-    login: str
-    action: str
-    kind: str
-    object_id: str
-    patient_id: UUID | None
-    request_id: str
-    address: str
-    detail: Mapping[str, Any]
-
-
-class AuditFilter(Paging):
-    """Which lines."""
-
-    user_id: UUID | None = None
-    patient_id: UUID | None = None
-    action: Line = ""
-    kind: Line = ""
-    after: datetime | None = None
-    before: datetime | None = None

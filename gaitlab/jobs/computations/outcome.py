@@ -8,7 +8,7 @@ import msgspec
 
 from ...errors import ProblemError
 from ...pipelines.progress import Progress
-from ..request import Work
+from ..request import OWNER, Work
 
 Settings = TypeVar("Settings")
 
@@ -28,11 +28,15 @@ Computation = Callable[[Work, Progress], Outcome]
 
 
 def settings_of(work: Work, kind: type[Settings]) -> Settings:
-    """The settings as the pipeline's dataclass; entries that it does not know are ignored.
+    """The settings as the pipeline's dataclass.
 
     Raises:
-        ProblemError: A value has the wrong type.
+        ProblemError: A value has the wrong type, or the job knows no setting of this name: ignored, it would be missed.
     """
+    known = {each.name for each in msgspec.inspect.type_info(kind).fields}
+    unknown = sorted({*work.settings} - known - {OWNER})
+    if unknown:
+        raise ProblemError(f"the job {work.kind} has no setting {unknown[0]}; available: {', '.join(sorted(known))}")
     try:
         return msgspec.convert(dict(work.settings), kind)
     except msgspec.ValidationError as error:
