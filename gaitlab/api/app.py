@@ -18,6 +18,7 @@ from ..jobs.events import EventBroker
 from ..storage.database import Database
 from ..storage.files import open_store
 from ..storage.models import ApiToken, User, WebSession
+from ..storage.sealing import Sealing
 from ..storage.settings import Settings
 from .authentication import is_alive
 from .headers import SecurityHeaders
@@ -125,6 +126,7 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
         settings=settings,
         database=database,
         files=open_store(settings),
+        sealing=Sealing.of(settings),
         events=EventBroker(database.url),
         viewers=Viewers(limits, _signed_out(database, settings)),
     )

@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from ..errors import AccessDenied, NotSignedIn, SecondFactorMissing, TooManyAttempts
 from ..storage.models import ApiToken, LoginAttempt, User, WebSession
+from ..storage.sealing import Sealing
 from ..storage.settings import Settings
 from .caller import Caller
 from .passwords import hash_password, verify_password
@@ -122,7 +123,7 @@ def note_attempt(db: Session, login: str, address: str, succeeded: bool) -> None
     db.add(LoginAttempt(login_hash=token_hash(login), address=address, succeeded=succeeded))
 
 
-def check_password(db: Session, login: str, password: str, code: str | None) -> User:
+def check_password(db: Session, sealing: Sealing, login: str, password: str, code: str | None) -> User:
     """The account that the credentials belong to.
 
     Raises:
@@ -137,16 +138,20 @@ def check_password(db: Session, login: str, password: str, code: str | None) -> 
     if user.totp_confirmed and user.totp_secret is not None:
         if code is None:
             raise SecondFactorMissing("the account has a second factor: send the code of the authenticator, too")
-        use_code(user, code)
+        use_code(sealing, user, code)
     return user
 
 
-def use_code(user: User, code: str) -> None:
+def use_code(sealing: Sealing, user: User, code: str) -> None:
     """Accept a code of the second factor once; raises NotSignedIn."""
-    step = None if user.totp_secret is None else accepted_step(user.totp_secret, code, user.totp_last_step)
+    if user.totp_secret is None:
+        raise NotSignedIn(WRONG)
+    secret = sealing.open(user.totp_secret, user.id)
+    step = accepted_step(secret, code, user.totp_last_step)
     if step is None:
         raise NotSignedIn(WRONG)
-    user.totp_last_step = step
+    # Sealed anew: a secret of before the installation had a key does not stay in clear.
+    user.totp_last_step, user.totp_secret = step, sealing.seal(secret, user.id)
 
 
 def start_session(db: Session, user: User, settings: Settings, second_factor: bool) -> tuple[str, WebSession]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from ..jobs.events import EventBroker
 from ..storage.database import Database
 from ..storage.files import FileStore
+from ..storage.sealing import Sealing
 from ..storage.settings import Settings
 from .viewers import Viewers
 
@@ -16,5 +17,6 @@ class Services:
     settings: Settings
     database: Database
     files: FileStore
+    sealing: Sealing
     events: EventBroker
     viewers: Viewers

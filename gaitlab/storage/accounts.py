@@ -43,7 +43,7 @@ class User(Identified, Versioned, Row):
     password_hash: Mapped[str | None] = mapped_column(default=None)
     """argon2id; None with single sign-on only."""
     totp_secret: Mapped[str | None] = mapped_column(default=None)
-    """Secret of the second factor, base32; None without one."""
+    """Secret of the second factor, base32, as `storage.sealing` keeps it; None without one."""
     totp_confirmed: Mapped[bool] = mapped_column(default=False)
     totp_last_step: Mapped[int | None] = mapped_column(default=None)
     """Last time step that was accepted: no code is accepted twice."""

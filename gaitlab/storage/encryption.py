@@ -1,4 +1,4 @@
-"""Encryption of stored files with a key from a file: AES-256-GCM in chunks.
+"""Encryption of stored files and secrets with a key from a file: AES-256-GCM, files in chunks.
 
 Each file has a key of its own, derived from the installation's key and a random salt (HKDF-SHA256), and each chunk a
 nonce made of its number and a mark of the last one, so that chunks can be neither swapped, dropped nor appended
@@ -81,8 +81,25 @@ class FileKey:
             except InvalidTag as error:
                 raise StorageError("a stored file was changed, or was encrypted with another key") from error
 
-    def _cipher(self, salt: bytes) -> AESGCM:
-        return AESGCM(HKDF(algorithm=SHA256(), length=KEY_BYTES, salt=salt, info=b"gaitlab file").derive(self._key))
+    def seal(self, secret: bytes, owner: bytes) -> bytes:
+        """A short secret encrypted; it opens for the same owner only."""
+        salt = os.urandom(SALT_BYTES)
+        return salt + self._cipher(salt, b"gaitlab secret").encrypt(_nonce(0, True), secret, owner)
+
+    def unseal(self, sealed: bytes, owner: bytes) -> bytes:
+        """The secret that was sealed.
+
+        Raises:
+            StorageError: It was changed, belongs to another owner, or has another key.
+        """
+        try:
+            cipher = self._cipher(sealed[:SALT_BYTES], b"gaitlab secret")
+            return cipher.decrypt(_nonce(0, True), sealed[SALT_BYTES:], owner)
+        except InvalidTag as error:
+            raise StorageError("a stored secret was changed, or was encrypted with another key") from error
+
+    def _cipher(self, salt: bytes, purpose: bytes = b"gaitlab file") -> AESGCM:
+        return AESGCM(HKDF(algorithm=SHA256(), length=KEY_BYTES, salt=salt, info=purpose).derive(self._key))
 
 
 def _nonce(number: int, last: bool) -> bytes:

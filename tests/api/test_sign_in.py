@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pyotp
 import pytest
 from sqlalchemy import delete, select, update
@@ -5,8 +7,10 @@ from web_world import PASSWORD
 
 from gaitlab.api.authentication import ATTEMPTS
 from gaitlab.api.tokens import LINK, new_token, token_hash
+from gaitlab.storage.encryption import FileKey
 from gaitlab.storage.models import LoginAttempt, OneTimePurpose, OneTimeToken, Role, User, WebSession
 from gaitlab.storage.schema import now
+from gaitlab.storage.sealing import Sealing
 
 BASE = "/api/v1/auth"
 WRONG = "login, password or code is wrong"
@@ -83,6 +87,34 @@ def test_a_second_factor_is_asked_for_and_each_code_counts_once(world, account):
     code = clock.generate_otp(last)
     assert sign_in(world.browser(), account, code=code).status_code == 200
     assert sign_in(world.browser(), account, code=code).json()["detail"] == WRONG
+
+
+@pytest.fixture
+def sealing(world):
+    """Makes the installation one with a key."""
+    made = Sealing(key=FileKey(bytes(32)))
+
+    def use():
+        world.app.state.services = replace(world.services, sealing=made)
+        return made
+
+    yield use
+    world.app.state.services = world.services
+
+
+def test_the_secret_of_a_second_factor_is_sealed_where_there_is_a_key(world, account, sealing):
+    def stored():
+        with world.services.database.sessions() as db:
+            return db.get(User, account.id).totp_secret
+
+    browser = world.sign_in(account)
+    clear = browser.post(f"{BASE}/second-factor").json()["secret"]
+    assert stored() == clear
+    key, clock = sealing(), pyotp.TOTP(clear)
+    last = clock.timecode(now())
+    assert browser.post(f"{BASE}/second-factor/confirm", json={"code": clock.generate_otp(last - 1)}).status_code == 204
+    assert key.open(stored(), account.id) == clear != stored()
+    assert sign_in(world.browser(), account, code=clock.generate_otp(last)).status_code == 200
 
 
 def test_a_new_password_signs_the_other_browsers_out(world, account):

@@ -108,12 +108,13 @@ def get_sign_in_methods(request: Request, db: Transaction) -> SignInMethods:
 @router.post("/sign-in")
 def sign_in(request: Request, response: Response, body: SignIn) -> SignedIn:
     """Sign in by login and password, and the code of the second factor where the account has one."""
-    database, origin = services_of(request).database, origin_of(request)
+    services, origin = services_of(request), origin_of(request)
+    database = services.database
     with database.transaction() as db:
         check_rate(db, body.login, origin.address)
     try:
         with database.transaction() as db:
-            user = check_password(db, body.login, body.password, body.code)
+            user = check_password(db, services.sealing, body.login, body.password, body.code)
             note_attempt(db, body.login, origin.address, succeeded=True)
             return enter(request, db, user, response)
     except NotSignedIn as error:
@@ -222,7 +223,7 @@ def start_second_factor(call: Account) -> SecondFactorSecret:
     if user.totp_confirmed:
         raise Conflict("the account has a second factor: remove it first")
     secret = new_secret()
-    user.totp_secret, user.totp_last_step = secret, None
+    user.totp_secret, user.totp_last_step = call.services.sealing.seal(secret, user.id), None
     return SecondFactorSecret(secret=secret, uri=provisioning_uri(secret, user.login))
 
 
@@ -248,7 +249,7 @@ def _use_code(call: Call, user: User, code: str) -> None:
     """Accept a code; 6 digits can be guessed, so failures count as failed attempts to sign in."""
     check_rate(call.db, user.login, call.origin.address)
     try:
-        use_code(user, code)
+        use_code(call.services.sealing, user, code)
     except NotSignedIn as error:
         with call.services.database.transaction() as db:
             note_attempt(db, user.login, call.origin.address, succeeded=False)
