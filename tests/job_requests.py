@@ -8,7 +8,13 @@ from gaitlab.storage.models import Job, JobKind
 def request_of(visit, kind=JobKind.ANALYSE, **more):
     """A job on the recordings of a visit."""
     inputs = tuple(
-        JobInput(role="walk", name=each.name, sha256=each.sha256, source=each.id) for each in visit.recordings
+        JobInput(
+            role="recording" if kind is JobKind.INSPECT else each.kind.value,
+            name=each.name,
+            sha256=each.sha256,
+            source=each.id,
+        )
+        for each in visit.recordings
     )
     settings = more.pop("settings", {})
     return JobRequest(

@@ -9,32 +9,25 @@ import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
-from datetime import date
 from pathlib import Path
 
 import psutil
+from job_requests import submit_job
 from sqlalchemy import func, select
 from sqlalchemy.exc import DBAPIError
-from stored import open_folder
+from stored import make_visit, open_folder
 
 from gaitlab.errors import StorageError
-from gaitlab.jobs.queue import submit
-from gaitlab.jobs.request import JobInput, JobRequest
 from gaitlab.storage.database import Database
 from gaitlab.storage.embedded import EmbeddedPostgres
 from gaitlab.storage.files import open_store
 from gaitlab.storage.models import (
     FINAL,
-    GaitSession,
     Job,
     JobKind,
     JobStatus,
-    Patient,
-    Recording,
-    RecordingKind,
     Result,
 )
-from gaitlab.storage.references import refer
 from gaitlab.storage.settings import Settings
 
 VICTIMS = {
@@ -126,41 +119,11 @@ def submit_jobs(database, store, files, analyses, inspections):
     """Upload recordings and ask for jobs; returns the digests of what was acknowledged."""
     digests = []
     for number in range(analyses + inspections):
-        with database.transaction() as session:
-            patient = Patient(pseudonym=f"P{number:04d}")
-            session.add(patient)
-            session.flush()
-            visit = GaitSession(patient_id=patient.id, visited_on=date(2026, 11, 22))
-            session.add(visit)
-            session.flush()
-            inputs = []
-            for path in files if number < analyses else files[:1]:
-                stored = store.put_file(path)
-                refer(session, store, stored)
-                kind = RecordingKind.STATIC if path.stem == "static" else RecordingKind.WALK
-                row = Recording(session_id=visit.id, name=path.name, sha256=stored.sha256, size=stored.size, kind=kind)
-                session.add(row)
-                session.flush()
-                role = path.stem if path.stem == "static" else "walk"
-                inputs.append(
-                    JobInput(
-                        role=role if number < analyses else "recording",
-                        name=path.name,
-                        sha256=stored.sha256,
-                        source=row.id,
-                    )
-                )
-                digests.append(stored.sha256)
-            submit(
-                session,
-                JobRequest(
-                    kind=JobKind.ANALYSE if number < analyses else JobKind.INSPECT,
-                    inputs=tuple(inputs),
-                    patients=frozenset({patient.id}),
-                    session_id=visit.id,
-                    settings={"weights": False} if number < analyses else {},
-                ),
-            )
+        kind = JobKind.ANALYSE if number < analyses else JobKind.INSPECT
+        contents = [(path.name, path.read_bytes()) for path in files[: None if kind is JobKind.ANALYSE else 1]]
+        visit = make_visit(database, store, contents, f"P{number:04d}")
+        submit_job(database, visit, kind, settings={"weights": False} if kind is JobKind.ANALYSE else {})
+        digests += [each.sha256 for each in visit.recordings]
     return digests
 
 

@@ -1,7 +1,7 @@
 """`gaitlab serve`, `worker`, `doctor`, `backup`, `restore` and `key`: running the web application."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -32,11 +32,10 @@ def serve(  # noqa: PLR0913 - one argument per option of the command
 ) -> None:
     """Run the web application, with its database and a worker unless told otherwise, until interrupted."""
     given = {
-        "data_dir": data_dir, "host": host, "port": port, "database_url": database_url, "files": files,
-        "key_file": key_file, "worker": worker, "concurrency": concurrency, "tls_certificate": tls_certificate,
+        "host": host, "port": port, "worker": worker, "concurrency": concurrency, "tls_certificate": tls_certificate,
         "tls_key": tls_key, "public_url": public_url, "log_format": log_format,
     }  # fmt: skip
-    load("service").serve(given)
+    load("service").serve(_installation(data_dir, database_url, files, key_file) | given)
 
 
 def worker(  # noqa: PLR0913 - one argument per option of the command
@@ -49,11 +48,8 @@ def worker(  # noqa: PLR0913 - one argument per option of the command
     log_format: Annotated[str | None, typer.Option(help="json or text.")] = None,
 ) -> None:
     """Work on jobs until interrupted; any number of workers, on any number of machines, share one database."""
-    given = {
-        "data_dir": data_dir, "database_url": database_url, "files": files, "key_file": key_file,
-        "concurrency": concurrency, "metrics_port": metrics_port, "log_format": log_format,
-    }  # fmt: skip
-    load("service").work(given)
+    given = {"concurrency": concurrency, "metrics_port": metrics_port, "log_format": log_format}
+    load("service").work(_installation(data_dir, database_url, files, key_file) | given)
 
 
 def doctor(
@@ -64,8 +60,7 @@ def doctor(
     verify: Annotated[bool, typer.Option(help="Read every stored file and compare its hash; may take long.")] = False,
 ) -> None:
     """Check database, files, memory and workers of an installation, and say what to do."""
-    given = {"data_dir": data_dir, "database_url": database_url, "files": files, "key_file": key_file}
-    load("doctor").doctor(given, verify)
+    load("doctor").doctor(_installation(data_dir, database_url, files, key_file), verify)
 
 
 def backup(
@@ -76,8 +71,7 @@ def backup(
     key_file: KeyFile = None,
 ) -> None:
     """Write everything, database and files, into one file; the service may run meanwhile."""
-    given = {"data_dir": data_dir, "database_url": database_url, "files": files, "key_file": key_file}
-    load("service").back_up_to(given, target)
+    load("service").back_up_to(_installation(data_dir, database_url, files, key_file), target)
 
 
 def restore(
@@ -88,13 +82,19 @@ def restore(
     key_file: KeyFile = None,
 ) -> None:
     """Bring a new data folder, or a new database, to the state of a backup."""
-    given = {"data_dir": data_dir, "database_url": database_url, "files": files, "key_file": key_file}
-    load("service").restore_from(given, source)
+    load("service").restore_from(_installation(data_dir, database_url, files, key_file), source)
 
 
 def key(path: Annotated[Path, typer.Argument(help="File to write; keep a copy elsewhere.")]) -> None:
     """Make a key that encrypts files at rest: without it they cannot be read any more."""
     load("service").make_key(path)
+
+
+def _installation(
+    data_dir: Path | None, database_url: str | None, files: str | None, key_file: Path | None
+) -> dict[str, Any]:
+    """What all commands are told of the installation, by the names of its settings."""
+    return {"data_dir": data_dir, "database_url": database_url, "files": files, "key_file": key_file}
 
 
 SERVER_COMMANDS = (serve, worker, doctor, backup, restore, key)

@@ -1,14 +1,15 @@
 """Changes of rows that two people may edit at the same time."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 from sqlalchemy.orm.exc import StaleDataError
 
 from ..errors import Conflict
-from .schema import Versioned
+from .schema import Row, Versioned
 
 STALE = "somebody changed this meanwhile: load it again and repeat the change"
 
@@ -21,6 +22,13 @@ def check_version(row: Versioned, version: int) -> None:
     """
     if row.version != version:
         raise Conflict(STALE, row.version)
+
+
+def assign(row: Row, values: Mapping[str, Any], clearable: frozenset[str] = frozenset()) -> None:
+    """Give the columns of a row new values; None means "as it is", but in the columns that may be cleared."""
+    for name, value in values.items():
+        if value is not None or name in clearable:
+            setattr(row, name, value)
 
 
 @contextmanager

@@ -3,8 +3,9 @@
 import pytest
 
 from gaitlab.errors import Conflict
-from gaitlab.storage.editing import check_version, conflicts
+from gaitlab.storage.editing import assign, check_version, conflicts
 from gaitlab.storage.models import Patient
+from gaitlab.storage.schema import now
 
 
 def add_patient(database, pseudonym="P001"):
@@ -43,3 +44,9 @@ def test_a_value_that_is_taken_is_said_in_a_sentence(database):
         conflicts(session, "P001 exists"),
     ):
         session.add(Patient(pseudonym="P001"))
+
+
+def test_none_leaves_a_value_unless_it_may_be_cleared():
+    patient = Patient(pseudonym="P1", diagnosis="spastic", retain_until=now().date())
+    assign(patient, {"diagnosis": None, "sex": "female", "retain_until": None}, frozenset({"retain_until"}))
+    assert (patient.diagnosis, patient.sex, patient.retain_until) == ("spastic", "female", None)

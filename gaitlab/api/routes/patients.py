@@ -12,6 +12,7 @@ from starlette.responses import FileResponse
 
 from ...errors import Conflict
 from ...storage.deletion import delete_patient as delete_everything
+from ...storage.editing import assign
 from ...storage.export import export_patient as write_zip
 from ...storage.models import Access, GaitSession, PatientIdentity, PatientShare, Role, User
 from ...storage.models import Patient as PatientRow
@@ -36,6 +37,7 @@ from ..schemas.patients import (
     ShareChange,
 )
 
+CLEARABLE = frozenset({"retain_until"})
 router = APIRouter(prefix="/patients", tags=["patients"])
 Reader = Annotated[Call, allowed(Permission.PATIENTS_READ)]
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
@@ -143,9 +145,7 @@ def change_patient(
     """Change what is given."""
     patient = visibility.patient(call, patient_id, "update")
     check_version(patient, expected)
-    for name, value in body.model_dump(exclude_unset=True).items():
-        if value is not None or name == "retain_until":
-            setattr(patient, name, value)
+    assign(patient, body.model_dump(exclude_unset=True), CLEARABLE)
     call.db.flush()
     tag(response, patient.version)
     return _one(call, patient_id)

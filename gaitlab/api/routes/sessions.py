@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query, Response
 from sqlalchemy import select
 
 from ...storage.deletion import delete_session as delete_everything
+from ...storage.editing import assign
 from ...storage.models import GaitSession, PatientIdentity
 from .. import visibility
 from ..caller import Call
@@ -20,7 +21,7 @@ from ..schemas.forms import Page, Paging
 from ..schemas.patients import NewSession, Session, SessionChange, SessionFilter
 
 DAYS_PER_YEAR = 365.2425
-NULLABLE = frozenset({"age_years"})
+CLEARABLE = frozenset({"age_years"})
 router = APIRouter(tags=["sessions"])
 Reader = Annotated[Call, allowed(Permission.PATIENTS_READ)]
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
@@ -94,9 +95,7 @@ def change_session(
     """Change what is given."""
     row = visibility.gait_session(call, session_id, "update")
     check_version(row, expected)
-    for name, value in body.model_dump(exclude_unset=True).items():
-        if value is not None or name in NULLABLE:
-            setattr(row, name, value)
+    assign(row, body.model_dump(exclude_unset=True), CLEARABLE)
     call.db.flush()
     tag(response, row.version)
     return _answer(call, row)

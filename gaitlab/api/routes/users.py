@@ -2,13 +2,14 @@
 
 from datetime import UTC, datetime, timedelta
 from http import HTTPStatus
-from typing import Annotated, Any
+from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Query, Response
 from sqlalchemy import func, or_, select, update
 
 from ...errors import AccessDenied, Conflict
+from ...storage.editing import assign
 from ...storage.models import ApiToken, OneTimePurpose, OneTimeToken, Role
 from ...storage.models import User as UserRow
 from ..authentication import end_sessions
@@ -100,10 +101,7 @@ def change_user(call: Manager, user_id: UUID, body: UserChange, response: Respon
     check_version(user, expected)
     if user.role is Role.ADMIN and (body.active is False or body.role not in (None, Role.ADMIN)):
         _keep_an_administrator(call, user_id)
-    for name in ("display_name", "role", "active"):
-        value: Any = getattr(body, name)
-        if value is not None:
-            setattr(user, name, value)
+    assign(user, body.model_dump(include={"display_name", "role", "active"}))
     if body.remove_second_factor:
         user.totp_confirmed, user.totp_secret = False, None
     if body.active is False or body.role is not None or body.remove_second_factor:
