@@ -17,7 +17,8 @@ from ..storage.files import FileStore, open_store
 from ..storage.migrate import newest_revision, present_revision
 from ..storage.models import Job, JobStatus, StoredFile
 from ..storage.settings import Settings
-from .service import running_database, settings_of
+from .given_settings import settings_of
+from .service import running_database
 
 LEAST_DISK = 5e9  # [bytes]
 SAMPLE = b"gaitlab doctor"
@@ -113,7 +114,7 @@ def _jobs(database: Database) -> Finding:
     if not present_revision(database):
         return Finding(subject="jobs", text="none yet")
     with database.sessions() as session:
-        counts = dict(session.execute(select(Job.status, func.count()).group_by(Job.status)).tuples())
+        counts = dict(session.execute(select(Job.status, func.count()).group_by(Job.status)).all())
     words = ", ".join(f"{counts.get(status, 0)} {status.value}" for status in JobStatus)
     return Finding(subject="jobs", text=words)
 

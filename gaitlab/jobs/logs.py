@@ -8,7 +8,7 @@ import structlog
 
 from ..storage.settings import LogFormat
 
-QUIET = ("procrastinate", "psycopg", "psycopg.pool", "sqlalchemy", "httpx", "websockets", "asyncio")
+QUIET = ("alembic", "procrastinate", "psycopg", "psycopg.pool", "sqlalchemy", "httpx", "websockets", "asyncio")
 """Their errors only: what they report otherwise is reported by gaitlab, with ids."""
 
 
