@@ -35,7 +35,7 @@ def serve(  # noqa: PLR0913 - one argument per option of the command
         "host": host, "port": port, "worker": worker, "concurrency": concurrency, "tls_certificate": tls_certificate,
         "tls_key": tls_key, "public_url": public_url, "log_format": log_format,
     }  # fmt: skip
-    load("service").serve(_installation(data_dir, database_url, files, key_file) | given)
+    load("serving").serve(_installation(data_dir, database_url, files, key_file) | given)
 
 
 def worker(  # noqa: PLR0913 - one argument per option of the command
@@ -49,7 +49,7 @@ def worker(  # noqa: PLR0913 - one argument per option of the command
 ) -> None:
     """Work on jobs until interrupted; any number of workers, on any number of machines, share one database."""
     given = {"concurrency": concurrency, "metrics_port": metrics_port, "log_format": log_format}
-    load("service").work(_installation(data_dir, database_url, files, key_file) | given)
+    load("work").work(_installation(data_dir, database_url, files, key_file) | given)
 
 
 def doctor(

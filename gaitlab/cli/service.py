@@ -1,24 +1,18 @@
-"""What the commands of the server do."""
+"""What the commands of the server do with database and files."""
 
 import contextlib
-import signal
-import socket
-import threading
 from collections.abc import Generator, Mapping
 from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import structlog
 import typer
-from pydantic import SecretStr, ValidationError
 from sqlalchemy import delete, exists, select
 
 from ..api.tokens import LINK, new_token
-from ..errors import OutputError, StorageError
-from ..jobs.logs import configure_logs
+from ..errors import OutputError
 from ..storage.backup import back_up, restore
 from ..storage.database import Database
 from ..storage.embedded import EmbeddedPostgres, make_private, write_private
@@ -28,23 +22,10 @@ from ..storage.migrate import migrate, newest_revision, present_revision
 from ..storage.models import OneTimePurpose, OneTimeToken, User
 from ..storage.schema import now
 from ..storage.settings import Settings
-from .children import Child, end_all
-from .worker_process import run_worker
+from .given_settings import settings_of
 
-WATCH_SECONDS = 0.5
-"""Time between two looks at the processes."""
 LINK_HOURS = 24.0
-BACKLOG = 512
 log = structlog.stdlib.get_logger()
-
-
-def settings_of(given: Mapping[str, Any]) -> Settings:
-    """Settings from the environment, and from the command line where something is given there."""
-    try:
-        return Settings(**{name: value for name, value in given.items() if value is not None})
-    except ValidationError as error:
-        problems = [f"{'.'.join(map(str, each['loc']))}: {each['msg']}" for each in error.errors()]
-        raise OutputError(f"the settings cannot be used: {'; '.join(problems)}") from error
 
 
 @contextmanager
@@ -77,71 +58,8 @@ def prepare(settings: Settings, url: str) -> None:
         database.close()
 
 
-def serve(given: Mapping[str, Any]) -> None:
-    """`gaitlab serve`."""
-    settings = settings_of(given)
-    configure_logs(settings.log_format)
-    stop = _stop_on_signals()
-    with _listening(settings) as listener:
-        children = [Child("gaitlab.cli.web_process", [listener.fileno()])]
-        if settings.worker:
-            children.append(Child("gaitlab.cli.worker_process"))
-        try:
-            # They load their modules while the database starts.
-            _watch(children, None)
-            with running_database(settings) as (url, server):
-                prepare(settings, url)
-                settings = settings.model_copy(update={"database_url": SecretStr(url)})
-                for child in children:
-                    child.tell(settings.plain())
-                _tell(settings, url, listener.getsockname()[1])
-                try:
-                    while not stop.is_set():
-                        _watch(children, server)
-                        stop.wait(WATCH_SECONDS)
-                finally:
-                    # Before the database goes.
-                    end_all(children)
-        finally:
-            end_all(children)
-
-
-def _watch(children: list[Child], server: EmbeddedPostgres | None) -> None:
-    try:
-        if server is not None and server.ensure_running():
-            log.warning("the embedded database had died and runs again")
-    except StorageError as error:
-        log.error("the embedded database does not start", reason=str(error))
-    for child in children:
-        child.ensure_running()
-
-
-def _stop_on_signals() -> threading.Event:
-    stop = threading.Event()
-
-    def handle(number: int, frame: FrameType | None) -> None:
-        del number, frame  # Unused.
-        stop.set()
-
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, handle)
-    return stop
-
-
-@contextmanager
-def _listening(settings: Settings) -> Generator[socket.socket]:
-    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    with socket.socket(family, socket.SOCK_STREAM) as listener:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            listener.bind((settings.host, settings.port))
-        except OSError as error:
-            raise OutputError(f"{settings.host}:{settings.port} cannot be listened on ({error.strerror})") from error
-        listener.listen(BACKLOG)
-        yield listener
-
-
-def _tell(settings: Settings, url: str, port: int) -> None:
+def tell_address(settings: Settings, url: str, port: int) -> None:
+    """Print where the service is, and the link to the first account while there is none."""
     scheme = "https" if settings.tls_certificate else "http"
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     base = settings.public_url.rstrip("/") or f"{scheme}://{host}:{port}"
@@ -171,15 +89,6 @@ def first_account_link(url: str, base: str) -> str:
         return f"{base}/link#{text}"
     finally:
         database.close()
-
-
-def work(given: Mapping[str, Any]) -> None:
-    """`gaitlab worker`."""
-    settings = settings_of(given)
-    configure_logs(settings.log_format)
-    with running_database(settings) as (url, _):
-        prepare(settings, url)
-        run_worker(settings, url)
 
 
 def back_up_to(given: Mapping[str, Any], target: Path) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..mocap.cycles import Cycle
+from ..mocap.cycle import Cycle
 
 N_SAMPLES = 101
 SNAP = 1e-6  # frames

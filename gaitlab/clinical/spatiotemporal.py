@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import msgspec
 import numpy as np
 
-from ..mocap.cycles import Cycle
+from ..mocap.cycle import Cycle
 from ..mocap.recording import Side
 
 Reduction = Callable[[list[float]], float | None]

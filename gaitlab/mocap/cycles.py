@@ -1,35 +1,16 @@
 """Gait cycles: from one foot strike to the next of the same foot."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from gaitlab.errors import InvalidRecording
+from gaitlab.mocap.cycle import Cycle
 from gaitlab.mocap.labels import LOWER_BODY
 from gaitlab.mocap.recording import Event, EventKind, Recording, Side
 from gaitlab.signal.gaps import fill_gaps
 
 SHORTEST, LONGEST = 0.3, 4.0  # s; running children and very slow patients
-
-
-@dataclass(frozen=True, kw_only=True)
-class Cycle:
-    """One stride of one side. Times [s] from the first stored frame; None where the event is not known."""
-
-    side: Side
-    start: float
-    """Foot strike."""
-    end: float
-    """Next foot strike of the same side."""
-    foot_off: float | None
-    opposite_foot_off: float | None
-    opposite_foot_strike: float | None
-
-    @property
-    def duration(self) -> float:
-        """Stride time [s]."""
-        return self.end - self.start
 
 
 def cycles(events: Sequence[Event], side: Side) -> tuple[Cycle, ...]:

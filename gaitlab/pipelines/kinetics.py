@@ -18,7 +18,7 @@ from ..clinical.kinetics_document import (
 from ..clinical.muscle_activity import RULE, Span, active_spans
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.leg_kinetics import Kinetics, KineticsSettings, solve_kinetics
-from ..mocap.cycles import Cycle
+from ..mocap.cycle import Cycle
 from ..mocap.emg import emg_envelopes, emg_muscle
 from ..mocap.plate_assignment import PlateContact, assign_contacts, contact_sentences
 from ..mocap.recording import Event, Recording, Side

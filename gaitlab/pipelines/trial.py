@@ -11,7 +11,8 @@ from ..clinical.spatiotemporal import Spatiotemporal, cycle_spatiotemporal
 from ..inverse.conventional import ConventionalKinematics
 from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
-from ..mocap.cycles import Cycle, full_strides, visible_strides
+from ..mocap.cycle import Cycle
+from ..mocap.cycles import full_strides, visible_strides
 from ..mocap.recording import Event, Recording, Side
 from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap

@@ -12,7 +12,8 @@ import numpy as np
 from ..bilevel.result import rms
 from ..clinical.document import StrideWeights, WeightsEntry
 from ..errors import InvalidRecording, NotConverged
-from ..mocap.cycles import Cycle, full_strides
+from ..mocap.cycle import Cycle
+from ..mocap.cycles import full_strides
 from ..mocap.recording import Event, Recording
 from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..bilevel.uncertainty import correlation
 from ..clinical.document import Comparison, CriterionWeight, Fit, Solver, StrideWeights, WeightsEntry
-from ..mocap.cycles import Cycle
+from ..mocap.cycle import Cycle
 from ..walking.explanation import Explanation
 from .weight_confidence import confidence_intervals, confused_criteria
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mocap.cycles import Cycle
+from ..mocap.cycle import Cycle
 from ..mocap.recording import Side
 from .colours import CENTRE, SIDE, side_of
 from .svg import figure, number, straight, text

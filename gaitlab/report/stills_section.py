@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 
 from ..clinical.document import SIDES
-from ..mocap.cycles import Cycle, cycles
+from ..mocap.cycle import Cycle
+from ..mocap.cycles import cycles
 from .blocks import Section, missing, paragraph, picture, section
 from .result import Result, mapping, real, sequence
 from .stills_figure import Moment, stills_figure, stride_moments

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitlab.clinical.cycle_average import average, complete, time_normalise
-from gaitlab.mocap.cycles import Cycle
+from gaitlab.mocap.cycle import Cycle
 
 RATE = 100.0
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gaitlab.clinical.spatiotemporal import cycle_spatiotemporal, mean, normalise, standard_deviation
-from gaitlab.mocap.cycles import Cycle
+from gaitlab.mocap.cycle import Cycle
 
 RATE = 100.0
 CYCLE = Cycle(side="left", start=1.0, end=2.0, foot_off=1.6, opposite_foot_off=1.1, opposite_foot_strike=1.5)
