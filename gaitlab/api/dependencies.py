@@ -79,12 +79,15 @@ def refuse(request: HTTPConnection, caller: Caller, permission: Permission) -> N
 def allowed(permission: Permission) -> Any:
     """Dependency: the call of somebody who holds `permission`."""
 
-    def call(request: Request, db: Transaction) -> Call:
-        caller = caller_of(db, request, permission)
-        return Call(db=db, caller=caller, origin=origin_of(request), services=services_of(request))
+    def call(request: Request) -> Generator[Call]:
+        services = services_of(request)
+        # As `transaction`, but not as a dependency of its own, which would be one more turn in another thread.
+        with services.database.transaction() as db:
+            caller = caller_of(db, request, permission)
+            yield Call(db=db, caller=caller, origin=origin_of(request), services=services)
 
     call.__dict__["permission"] = permission
-    return Depends(call)
+    return Depends(call, scope="function")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -43,9 +43,10 @@ def disposition(name: str, inline: bool = False) -> str:
     return f"{'inline' if inline else 'attachment'}; filename=\"{plain}\"; filename*=UTF-8''{quote(name, safe='')}"
 
 
-def stream(call: Call, sha256: str, media_type: str, name: str, **headers: str) -> Response:
-    """A stored file as an answer; its hash is its ETag, because a content never changes."""
-    size = call.db.scalar(select(StoredFile.size).where(StoredFile.sha256 == sha256))
+def stream(call: Call, sha256: str, media_type: str, name: str, size: int | None = None, **headers: str) -> Response:
+    """A stored file as an answer, of `size` bytes if known; its hash is its ETag, because a content never changes."""
+    if size is None:
+        size = call.db.scalar(select(StoredFile.size).where(StoredFile.sha256 == sha256))
     told = {
         "content-disposition": disposition(name),
         "etag": f'"{sha256}"',
@@ -66,7 +67,7 @@ def stream_part(call: Call, row: Attachment, wanted: str | None) -> Response:
     first = int(found[1]) if found else 0
     last = min(int(found[2]), row.size - 1) if found and found[2] else row.size - 1
     if found is None or first > last:
-        return stream(call, row.sha256, row.media_type, row.name, accept_ranges="bytes")
+        return stream(call, row.sha256, row.media_type, row.name, row.size, accept_ranges="bytes")
     headers = {
         "content-disposition": disposition(row.name),
         "content-range": f"bytes {first}-{last}/{row.size}",

@@ -1,13 +1,14 @@
 """Connection to PostgreSQL 15 to 18."""
 
+import select
 from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Self
+from typing import Any, Self
 
 import psycopg
-from sqlalchemy import Engine, create_engine, make_url, text
-from sqlalchemy.exc import ArgumentError, OperationalError
+from sqlalchemy import Engine, create_engine, event, make_url, text
+from sqlalchemy.exc import ArgumentError, InvalidatePoolError, OperationalError
 from sqlalchemy.orm import Session, sessionmaker
 
 from ..errors import StorageError
@@ -38,11 +39,11 @@ class Database:
             raise StorageError(f"the database is {parts.get_backend_name()}; only postgresql:// is supported")
         engine = create_engine(
             parts.set(drivername="postgresql+psycopg"),
-            pool_pre_ping=True,
             hide_parameters=True,
             pool_size=connections,
             max_overflow=connections,
         )
+        event.listen(engine, "checkout", _refuse_closed)
         plain = parts.set(drivername="postgresql").render_as_string(hide_password=False)
         return cls(url=plain, engine=engine, sessions=sessionmaker(engine, expire_on_commit=False))
 
@@ -70,6 +71,23 @@ class Database:
     def close(self) -> None:
         """Close all connections."""
         self.engine.dispose()
+
+
+def _refuse_closed(connection: psycopg.Connection[Any], *pooled: object) -> None:
+    """Let the pool replace its connections when the server has closed this one.
+
+    A server that ended has said so: an idle connection has something to read, be it only the end. To look costs
+    nothing, while the usual question to the server would cost each request as much as one of its queries.
+    """
+    del pooled  # The pool's own records.
+    if connection.closed or _has_news(connection.fileno()):
+        raise InvalidatePoolError
+
+
+def _has_news(descriptor: int) -> bool:
+    poll = select.poll()
+    poll.register(descriptor, select.POLLIN)
+    return bool(poll.poll(0))
 
 
 def first_line(error: BaseException | None) -> str:

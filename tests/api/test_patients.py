@@ -125,3 +125,12 @@ def test_errors_repeat_no_values(world, clinician):
     answer = world.client.post(PATIENTS, headers=clinician, json={"pseudonym": "x" * 300, "surname": "Doe-Secret"})
     assert answer.status_code == 422 and "Doe-Secret" not in answer.text
     assert {each["where"] for each in answer.json()["errors"]} == {"body.pseudonym", "body.surname"}
+
+
+@pytest.mark.parametrize(("limit", "offset", "shown"), [(2, 0, 2), (3, 0, 3), (50, 1, 2), (50, 3, 0), (2, 2, 1)])
+def test_the_total_is_that_of_all_parts(world, clinician, case, limit, offset, shown):
+    address = f"/api/v1/patients/{case.patient_id}/sessions"
+    for day in ("2026-01-02", "2026-01-03"):
+        assert world.client.post(address, headers=clinician, json={"visited_on": day}).status_code == 201
+    page = world.client.get(f"{address}?limit={limit}&offset={offset}", headers=clinician).json()
+    assert (len(page["items"]), page["total"]) == (shown, 3)

@@ -88,7 +88,7 @@ def delete_recording(asker: Stripper, recording_id: UUID, expected: ExpectedVers
 def download_recording(call: FileReader, recording_id: UUID) -> Response:
     """The C3D file as it is stored."""
     row = visibility.part(call, RecordingRow, recording_id, "export")
-    return stream(call, row.sha256, C3D, row.name)
+    return stream(call, row.sha256, C3D, row.name, row.size)
 
 
 @router.post("/recordings/{recording_id}/strip")

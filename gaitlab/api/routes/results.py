@@ -13,7 +13,7 @@ from starlette.background import BackgroundTask
 from starlette.responses import FileResponse
 
 from ...errors import AccessDenied, Conflict
-from ...storage.models import CohortMember, JobPatient, ReportVersion, ResultFile
+from ...storage.models import CohortMember, GaitSession, JobPatient, ReportVersion, ResultFile
 from ...storage.models import Result as ResultRow
 from ...storage.references import remove_unused
 from .. import visibility
@@ -93,14 +93,11 @@ def _answer(call: Call, row: ResultRow, patient_id: UUID | None) -> Result:
     )
 
 
-def _patient(call: Call, row: ResultRow) -> UUID | None:
-    return None if row.session_id is None else visibility.patient_of(call, row.session_id)
-
-
 @router.get("")
 def list_results(call: Reader, which: Annotated[ResultFilter, Query()]) -> Page[Result]:
     """Results on visible patients, newest first."""
-    query = select(ResultRow).where(visibility.visible_job(call, ResultRow.job_id))
+    query = select(ResultRow, GaitSession.patient_id).outerjoin(GaitSession, GaitSession.id == ResultRow.session_id)
+    query = query.where(visibility.visible_job(call, ResultRow.job_id))
     if which.patient_id is not None:
         mine = exists().where(JobPatient.job_id == ResultRow.job_id, JobPatient.patient_id == which.patient_id)
         query = query.where(mine)
@@ -110,14 +107,14 @@ def list_results(call: Reader, which: Annotated[ResultFilter, Query()]) -> Page[
         query = query.where(ResultRow.kind == which.kind)
     call.audit("list", "results", patient_id=which.patient_id)
     query = query.order_by(ResultRow.created_at.desc(), ResultRow.id)
-    return page(call, query, which, lambda row: _answer(call, row[0], _patient(call, row[0])))
+    return page(call, query, which, lambda row: _answer(call, row[0], row[1]))
 
 
 @router.get("/{result_id}")
 def get_result(call: Reader, result_id: UUID) -> ResultWithFiles:
     """One result with its files."""
     row = visibility.result(call, result_id, "read")
-    answer = _answer(call, row, _patient(call, row))
+    answer = _answer(call, row, None if row.session_id is None else visibility.patient_of(call, row.session_id))
     names = {} if call.caller.sees_names else masked_names(call, [row.session_id] if row.session_id else [])
     files = [
         {"name": mask(file.name, names), "media_type": file.media_type, "sha256": file.sha256, "size": file.size}
@@ -136,7 +133,7 @@ def get_result_document(call: Reader, result_id: UUID, trial: Trial = "") -> Res
 def _document(call: Call, row: ResultRow, trial: str) -> Response:
     if call.caller.sees_names:
         file = file_of(call, row.id, in_trial(trial, DOCUMENT))
-        return stream(call, file.sha256, "application/json", "result.json")
+        return stream(call, file.sha256, "application/json", "result.json", file.size)
     masks = masked_names(call, [] if row.session_id is None else [row.session_id])
     real = next((name for name, number in masks.items() if number == trial), trial)
     file = file_of(call, row.id, in_trial(real, DOCUMENT))
@@ -149,7 +146,8 @@ def download_result_file(call: NameReader, result_id: UUID, name: str) -> Respon
     """One file of a result as it is stored."""
     visibility.result(call, result_id, "export", "result_files", f"{result_id}/{name}")
     file = file_of(call, result_id, name)
-    return stream(call, file.sha256, file.media_type, Path(name).name, content_security_policy=DOCUMENT_POLICY)
+    called = Path(name).name
+    return stream(call, file.sha256, file.media_type, called, file.size, content_security_policy=DOCUMENT_POLICY)
 
 
 @router.get(
