@@ -55,15 +55,15 @@ class _Doomed:
     jobs: tuple[UUID, ...]
 
     @property
-    def uploads(self) -> Select[tuple[UUID]]:
+    def uploads(self) -> Select[UUID]:
         return select(Upload.id).where(Upload.session_id.in_(self.sessions))
 
     @property
-    def results(self) -> Select[tuple[UUID]]:
+    def results(self) -> Select[UUID]:
         return select(Result.id).where(Result.job_id.in_(self.jobs))
 
     @property
-    def reports(self) -> Select[tuple[UUID]]:
+    def reports(self) -> Select[UUID]:
         """Those of other visits on one of the results included."""
         return select(ReportVersion.id).where(
             ReportVersion.session_id.in_(self.sessions) | ReportVersion.result_id.in_(self.results)
