@@ -32,6 +32,19 @@ def time_normalise(values: np.ndarray, rate: float, cycle: Cycle) -> np.ndarray:
     return np.where(inside, mixed, np.nan)
 
 
+def time_normalise_forces(values: np.ndarray, rate: float, cycle: Cycle) -> np.ndarray:
+    """As `time_normalise`, for what is known only while the ground reaction is: shape (n_frames,) to (101,).
+
+    The last frame of the cycle is held beyond the strike that ends it: the next stance may be unknown, and the strike
+    lies between the last frame before it and the first frame in it.
+    """
+    last = int(np.floor(cycle.end * rate))
+    if last + 1 < len(values) and np.isnan(values[last + 1]):
+        values = values.copy()
+        values[last + 1] = values[last]
+    return time_normalise(values, rate, cycle)
+
+
 def complete(curves: Sequence[np.ndarray]) -> list[np.ndarray]:
     """The curves, shape (101,) each, any unit, that have no gap."""
     return [curve for curve in curves if np.all(np.isfinite(curve))]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..clinical.cycle_average import average, complete, time_normalise
+from ..clinical.cycle_average import average, complete, time_normalise, time_normalise_forces
 from ..clinical.document import SIDES
 from ..clinical.kinetics_document import (
     UNITS,
@@ -107,22 +107,11 @@ def _solve(
 def _cut_curves(solved: Kinetics, found: Cycles, rate: float) -> CycleCurves:
     return {
         name: {
-            side: tuple(_cut(solved.curves[f"{side}_{name}"], rate, cycle) for cycle in found[side]) for side in SIDES
+            side: tuple(time_normalise_forces(solved.curves[f"{side}_{name}"], rate, cycle) for cycle in found[side])
+            for side in SIDES
         }
         for name in UNITS
     }
-
-
-def _cut(values: np.ndarray, rate: float, cycle: Cycle) -> np.ndarray:
-    """One cycle of values (n_frames,), any unit: 101 samples; its last frame is held beyond the strike that ends it.
-
-    The next stance may be unknown, and the strike lies between the last frame before it and the first frame in it.
-    """
-    last = int(np.floor(cycle.end * rate))
-    if last + 1 < len(values) and np.isnan(values[last + 1]):
-        values = values.copy()
-        values[last + 1] = values[last]
-    return time_normalise(values, rate, cycle)
 
 
 def _cut_emg(recording: Recording, found: Cycles) -> CycleCurves:

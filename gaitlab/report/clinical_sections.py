@@ -1,19 +1,14 @@
 """Sections of the clinical part: who and what, kinematics page, spatiotemporal table, events."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-import numpy as np
-
-from ..clinical.cycle_average import time_normalise
 from ..clinical.document import CURVES, SIDES
-from ..mocap.cycles import cycles
 from .blocks import Block, Section, Table, facts, missing, paragraph, picture, section, table
 from .cycle_panels import Marks
 from .formatting import ABSENT, fixed, label, plain, unit_of
-from .kinematics_figure import average_figure, consistency_figure
+from .kinematics_figure import average_figure
 from .result import Result, first_real, mapping, real, sequence
 from .score_sections import norms_of
-from .walk_file import Angles
 
 _CONVENTIONS = (
     "Conventions: angles in degrees; pelvic tilt anterior +, obliquity up +, rotation internal +; hip flexion +, "
@@ -139,40 +134,6 @@ def _cycles_used(result: Result) -> str:
     }
     parts = [f"{side} {count}" for side, count in counts.items() if count is not None]
     return f"Number of cycles: {', '.join(parts)}." if parts else "Number of cycles: not stated."
-
-
-def consistency_section(result: Result, trials: Sequence[tuple[Result, Angles | None]], why: str) -> Section:
-    """Every cycle of every trial; `why` explains trials without angles per frame."""
-    known = [every_cycle(trial, angles) for trial, angles in trials if angles is not None]
-    if not known:
-        return section("All cycles", missing("every cycle", why or "angles.csv is absent"))
-    curves = {
-        name: {side: [c for found in known for c in found.get(name, {}).get(side, [])] for side in SIDES}
-        for name in CURVES
-    }
-    count = max(len(values) for sides in curves.values() for values in sides.values())
-    if count < 2:
-        reason = "no side has two complete cycles, so the average says it all"
-        return section("All cycles", missing("every cycle", reason))
-    return section("All cycles", picture(consistency_figure(curves, marks_of(result), norms_of(result))))
-
-
-def every_cycle(result: Result, angles: Angles) -> dict[str, dict[str, list[np.ndarray]]]:
-    """Curves of all cycles of one trial [deg], shape (101,) each: curve name to side to cycles."""
-    length = float(angles.time[-1] - angles.time[0])
-    if length <= 0.0:
-        return {}
-    rate = (len(angles.time) - 1) / length
-    curves = dict[str, dict[str, list[np.ndarray]]]()
-    for name in CURVES:
-        sides = dict[str, list[np.ndarray]]()
-        for side in SIDES:
-            values = angles.curves.get(f"{side}_{name}")
-            if values is not None:
-                sampled = [time_normalise(values, rate, cycle) for cycle in cycles(result.events, side)]
-                sides[side] = [samples for samples in sampled if np.any(np.isfinite(samples))]
-        curves[name] = sides
-    return curves
 
 
 def spatiotemporal_section(result: Result) -> Section:

@@ -12,6 +12,11 @@ from .result import Curve
 from .svg import Axes, area, clipped, curve, element, frame, number, straight, text, ticks
 
 TICK_DASH = {"left": "none", "right": "2 1"}
+CurveSets = Mapping[str, Mapping[str, Curve]]
+"""Curve name to side to its average cycle."""
+CycleSets = Mapping[str, Mapping[str, Sequence[np.ndarray]]]
+"""Curve name to side to every cycle, shape (101,) each, in the unit of the curve."""
+EVERY_CYCLE = "thin line: one cycle; thick line: mean of the cycles"
 PERCENT = np.linspace(0.0, 100.0, N_SAMPLES)
 
 
@@ -59,10 +64,18 @@ def _average(axes: Axes, side: str, values: Curve) -> str:
     return band + cycle_line(axes, side, values.mean, 2.2)
 
 
-def cycle_line(axes: Axes, side: str, values: np.ndarray, width: float) -> str:
+def cycle_line(axes: Axes, side: str, values: np.ndarray, width: float, opacity: float = 1.0) -> str:
     """One curve of shape (101,), unit of the axes, in the side's colour and line style."""
     style = {"stroke": SIDE[side], "stroke_width": width, "stroke_dasharray": DASH[side], "stroke_linejoin": "round"}
+    style |= {} if opacity == 1.0 else {"stroke_opacity": opacity}
     return curve(axes, PERCENT, values, **style)
+
+
+def cycle_lines(axes: Axes, cycles: Mapping[str, Sequence[np.ndarray]], means: Mapping[str, Curve]) -> str:
+    """Every cycle of each side as a thin line, shape (101,) each, unit of the axes, and the means above them."""
+    thin = "".join(cycle_line(axes, side, values, 0.8, 0.7) for side in SIDES for values in cycles.get(side, ()))
+    mean = "".join(cycle_line(axes, side, means[side].mean, 2.4) for side in SIDES if side in means)
+    return thin + mean
 
 
 def mean_range(curves: Mapping[str, Curve]) -> tuple[float, float] | None:
@@ -74,6 +87,11 @@ def value_range(values: Sequence[np.ndarray]) -> tuple[float, float] | None:
     """Lowest and highest finite value of arrays of shape (101,), in their unit; None without any."""
     finite = np.concatenate([v[np.isfinite(v)] for v in values]) if values else np.zeros(0)
     return (float(finite.min()), float(finite.max())) if finite.size else None
+
+
+def every_range(cycles: Mapping[str, Sequence[np.ndarray]]) -> tuple[float, float] | None:
+    """Lowest and highest value of all cycles of both sides, shape (101,) each, in their unit; None without any."""
+    return value_range([values for side in SIDES for values in cycles.get(side, ())])
 
 
 def cycle_panel(panel: CyclePanel, content: str, extent: tuple[float, float] | None, marks: Mapping[str, Marks]) -> str:

@@ -7,20 +7,20 @@ pages can be compared by eye; a curve that leaves its scale is cut off and the p
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from ..clinical.document import SIDES
 from .cycle_panels import (
+    EVERY_CYCLE,
     PERCENT,
+    CurveSets,
     CyclePanel,
+    CycleSets,
     Marks,
     averages,
-    cycle_line,
+    cycle_lines,
     cycle_panel,
+    every_range,
     legend,
     legend_lines,
     mean_range,
-    value_range,
 )
 from .result import Curve
 from .svg import Axes, area, curve, figure, text
@@ -83,9 +83,7 @@ class Norms:
 NO_NORMS = Norms()
 
 
-def average_figure(
-    kinematics: Mapping[str, Mapping[str, Curve]], marks: Mapping[str, Marks], norms: Norms = NO_NORMS
-) -> str:
+def average_figure(kinematics: CurveSets, marks: Mapping[str, Marks], norms: Norms = NO_NORMS) -> str:
     """Draw the mean of each side, with a band of one standard deviation where there are two cycles or more."""
     drawn = {p.name: norm_band(p, norms) + averages(p.axes, kinematics.get(p.name, {})) for p in PANELS}
     words = ("mean of the cycles, coloured band: ± 1 standard deviation", *norm_legend(norms))
@@ -109,17 +107,14 @@ def norm_legend(norms: Norms) -> tuple[str, ...]:
     return (f"grey: mean ± 1 SD of {first},", f"speed{speed}") if speed else (f"grey: mean ± 1 SD of {first}",)
 
 
-def consistency_figure(
-    cycles: Mapping[str, Mapping[str, Sequence[np.ndarray]]], marks: Mapping[str, Marks], norms: Norms = NO_NORMS
-) -> str:
-    """Draw every cycle of each side, curve name to side to curves [deg] of shape (101,)."""
+def consistency_figure(cycles: CycleSets, means: CurveSets, marks: Mapping[str, Marks], norms: Norms = NO_NORMS) -> str:
+    """Draw every cycle of each side as a thin line, and the means [deg] above them."""
     drawn, extents = dict[str, str](), dict[str, tuple[float, float] | None]()
     for panel in PANELS:
         sides = cycles.get(panel.name, {})
-        lines = "".join(cycle_line(panel.axes, s, y, 1.2) for s in SIDES for y in sides.get(s, ()))
-        drawn[panel.name] = norm_band(panel, norms) + lines
-        extents[panel.name] = value_range([y for s in SIDES for y in sides.get(s, ())])
-    return _page(drawn, extents, marks, ("each line is one cycle", *norm_legend(norms)))
+        drawn[panel.name] = norm_band(panel, norms) + cycle_lines(panel.axes, sides, means.get(panel.name, {}))
+        extents[panel.name] = every_range(sides)
+    return _page(drawn, extents, marks, (EVERY_CYCLE, *norm_legend(norms)))
 
 
 def _page(

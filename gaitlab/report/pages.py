@@ -6,11 +6,11 @@ from ..errors import OutputError
 from .blocks import Page, Section, missing, section
 from .clinical_sections import (
     body_section,
-    consistency_section,
     events_section,
     kinematics_section,
     spatiotemporal_section,
 )
+from .consistency_sections import angles_section, kinetics_cycles_section
 from .front_sections import examination_sections, front_sections
 from .kinetics_sections import emg_sections, kinetics_sections
 from .prediction_sections import prediction_sections
@@ -62,7 +62,7 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
         "front": lambda: front_sections(source),
         "examination": lambda: examination_sections(source),
         "kinematics": lambda: (kinematics_section(overall),),
-        "consistency": lambda: (_every_cycle(source), strides_section(overall)),
+        "consistency": lambda: (angles_section(source), strides_section(overall), kinetics_cycles_section(source)),
         "kinetics": lambda: kinetics_sections(overall),
         "emg": lambda: emg_sections(overall),
         "spatiotemporal": lambda: (spatiotemporal_section(overall),),
@@ -74,11 +74,6 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
     }
     common = [Page(key=key, sections=makers[key]()) for key in KEYS if key in keys and key in makers]
     return (*common, *_trial_pages(source, keys))
-
-
-def _every_cycle(source: Source) -> Section:
-    why = " ".join(trial.problems.get("angles", "") for trial in source.trials).strip()
-    return consistency_section(source.overall, [(trial.result, trial.angles) for trial in source.trials], why)
 
 
 def _common_walk_pages(source: Source) -> dict[str, Callable[[], tuple[Section, ...]]]:

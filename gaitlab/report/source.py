@@ -1,18 +1,20 @@
 """Everything a report is made from, read from a result folder before anything is drawn."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeVar
 
 from ..clinical.examination import Examination, read_examination
 from ..errors import OutputError
 from .result import Result, read_result, trial_directories
-from .walk_file import Angles, Walk, read_angles, read_walk
+from .walk_file import Frames, Walk, read_curves, read_walk
 
 EXAMINATION = "examination.json"
 """Name of the clinical examination in a result folder."""
-_FILES = ("result.json", "angles.csv", "walk.npz")
+T = TypeVar("T")
+_FILES = ("result.json", "angles.csv", "kinetics.csv", "walk.npz")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,10 +22,12 @@ class Trial:
     """One walk."""
 
     result: Result
-    angles: Angles | None = None
+    angles: Frames | None = None
+    kinetics: Frames | None = None
+    """Moments [N*m/kg], powers [W/kg] and ground reactions [% of body weight]."""
     walk: Walk | None = None
     problems: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Why `angles` or `walk` are absent, by these names."""
+    """Why `angles`, `kinetics` or `walk` are absent, by these names."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,18 +99,20 @@ def file_hash(path: Path) -> str:
 
 
 def _trial(directory: Path, result: Result) -> Trial:
-    angles: Angles | None = None
-    walk: Walk | None = None
     problems = dict[str, str]()
+    angles, problems["angles"] = _read(read_curves, directory / "angles.csv", directory)
+    kinetics, problems["kinetics"] = _read(read_curves, directory / "kinetics.csv", directory)
+    walk, problems["walk"] = _read(read_walk, directory, directory)
+    known = {name: why for name, why in problems.items() if why}
+    return Trial(result=result, angles=angles, kinetics=kinetics, walk=walk, problems=known)
+
+
+def _read(reader: Callable[[Path], T | None], path: Path, directory: Path) -> tuple[T | None, str]:
+    """What was read, and why nothing could be read; empty without a problem."""
     try:
-        angles = read_angles(directory)
+        return reader(path), ""
     except OutputError as error:
-        problems["angles"] = _without_path(error, directory)
-    try:
-        walk = read_walk(directory)
-    except OutputError as error:
-        problems["walk"] = _without_path(error, directory)
-    return Trial(result=result, angles=angles, walk=walk, problems=problems)
+        return None, _without_path(error, directory)
 
 
 def _without_path(error: OutputError, directory: Path) -> str:

@@ -71,23 +71,23 @@ def read_walk(directory: Path) -> Walk:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Angles:
-    """What `angles.csv` holds: joint angles of every stored frame, clinical signs."""
+class Frames:
+    """What `angles.csv` or `kinetics.csv` holds: curves of every stored frame, clinical signs."""
 
     time: np.ndarray
     """Time from the first stored frame [s], shape (n,)."""
     curves: Mapping[str, np.ndarray]
-    """left_hip_flexion ... to angles [deg], shape (n,); NaN where missing."""
+    """left_hip_flexion ... to angles [deg], or left_hip_power ... in their units, shape (n,); NaN where missing."""
 
 
-def read_angles(directory: Path) -> Angles | None:
-    """Read `angles.csv` of one trial; None if it is absent.
+def read_curves(path: Path) -> Frames | None:
+    """Read the table of one trial; None if it is absent.
 
     Raises:
         OutputError: the file is there but is not a table of numbers with a column `time`.
     """
-    table = read_frames(directory / "angles.csv")
-    return None if table is None else Angles(time=table.pop("time"), curves=table)
+    table = read_frames(path)
+    return None if table is None else Frames(time=table.pop("time"), curves=table)
 
 
 def read_frames(path: Path) -> dict[str, np.ndarray] | None:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gaitlab.clinical.cycle_average import average, complete, time_normalise
+from gaitlab.clinical.cycle_average import average, complete, time_normalise, time_normalise_forces
 from gaitlab.mocap.cycle import Cycle
 
 RATE = 100.0
@@ -38,3 +38,11 @@ def test_average_counts_complete_cycles_only():
 
 def test_average_of_nothing_is_unknown():
     assert np.isnan(average([])).all()
+
+
+def test_forces_are_held_up_to_the_strike_that_ends_the_cycle():
+    known = np.arange(101.0)
+    known[51:] = np.nan  # the next stance is not measured; the strike lies between frames 50 and 51
+    ended = cycle(0.1, 0.504)
+    assert np.isnan(time_normalise(known, RATE, ended)[-1])
+    assert time_normalise_forces(known, RATE, ended)[-1] == 50.0 and np.isnan(known[51])

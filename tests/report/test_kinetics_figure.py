@@ -13,7 +13,10 @@ def test_bands_are_drawn_where_the_cohort_has_them():
     parts = {p.name: markup.split(f'data-curve="{p.name}"')[1].split("</g>")[0] for p in PANELS}
     drawn = {name for name, part in parts.items() if "<polygon" in part}
     assert drawn == {"hip_power"}
-    assert "grey: mean ± 1 SD of Cohort, n = 82," in markup and "no norms of: hip moment, internal, knee" in markup
+    assert (
+        "grey: mean ± 1 SD of Cohort, n = 82," in markup
+        and "no norms of: hip moment, sagittal, internal; knee" in markup
+    )
 
 
 def test_a_cohort_of_angles_alone_has_no_band_here():

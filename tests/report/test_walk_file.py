@@ -3,7 +3,7 @@ import pytest
 from synthetic_output import document, walk_arrays, write_output
 
 from gaitlab.errors import OutputError
-from gaitlab.report.walk_file import read_angles, read_walk
+from gaitlab.report.walk_file import read_curves, read_walk
 
 
 def test_arrays_of_the_wrong_shape_read_as_missing(tmp_path):
@@ -26,7 +26,7 @@ def test_pickled_objects_are_refused(tmp_path):
 
 def test_empty_cells_of_the_angles_are_gaps(tmp_path):
     (tmp_path / "angles.csv").write_text("time,left_hip_flexion\n0.0,1.5\n0.01,\n")
-    angles = read_angles(tmp_path)
+    angles = read_curves(tmp_path / "angles.csv")
     assert angles.curves["left_hip_flexion"][0] == 1.5 and np.isnan(angles.curves["left_hip_flexion"][1])
 
 
@@ -34,4 +34,4 @@ def test_empty_cells_of_the_angles_are_gaps(tmp_path):
 def test_angles_that_are_no_table_are_refused(tmp_path, content):
     (tmp_path / "angles.csv").write_text(content)
     with pytest.raises(OutputError, match="run 'gaitlab analyse' again"):
-        read_angles(tmp_path)
+        read_curves(tmp_path / "angles.csv")
