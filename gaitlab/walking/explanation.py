@@ -128,12 +128,15 @@ def _explain_with_states(
     if close.solution.status is not Status.SOLVED:
         return None
     level = WalkLevel(close, settings.identification, workers)
-    start = _equal_weights(level, report)
+    equal_theta, response = _equal_weights(level, report)
+    # Far from the right weights the response to steps of the states is too wild to follow.
+    first = settings.method.solve(level, equal_theta, response, _part(report, "weights"))
+    start = first.theta, WalkOptimum(level, level.problem(first.theta), first.response.solution)
     level, estimate = settings.joint.solve(level, frames, start, _part(report, "weights and states together"))
     if not estimate.converged:
         return None
     found = WalkOptimum(level, level.problem(estimate.theta), estimate.response.solution)
-    equal = level.respond_from_afar(start[0], found.solution, _arcs(report, "equal weights"))
+    equal = level.respond_from_afar(equal_theta, found.solution, _arcs(report, "equal weights"))
     singles = single_criteria(level, found, report) if settings.single_criteria else []
     return replace(_explanation(level, estimate, equal, singles), tracked=tracked, states_estimated=True)
 

@@ -144,16 +144,24 @@ class WalkLevel:
         level.given = states
         return level
 
-    def normalised_at(self, optimum: WalkOptimum, theta: np.ndarray) -> tuple["WalkLevel", np.ndarray]:
+    def normaliser_values(self, problem: MechanicalProblem, w: np.ndarray) -> np.ndarray:
+        """All criteria and the sum of squared accelerations of a walk w, shape (n_w,); shape (n_all_criteria + 1,)."""
+        return np.append(problem.criteria(w), self._acceleration_cost(problem, w))
+
+    def normalised_at(
+        self, optimum: WalkOptimum, theta: np.ndarray, inflation: np.ndarray
+    ) -> tuple["WalkLevel", np.ndarray]:
         """The level whose criteria and floors are divided by their values on an optimum, and theta restated for it.
 
-        See `restated` for the weights, shape (n_theta,).
+        The values are lowered by what noise in the optimum adds to them, as `normaliser_values`, by half at most. See
+        `restated` for the weights, shape (n_theta,).
         """
-        level, w = copy(self), optimum.solution.w
-        criteria = optimum.problem.criteria(w)
+        level, values = copy(self), self.normaliser_values(optimum.problem, optimum.solution.w)
+        values -= np.clip(inflation, 0.0, 0.5 * values)
+        criteria = values[:-1]
         weights = np.maximum(self.restated(theta, criteria)[0], 0.0)
         level.all_normalisers, level.normalisers = criteria, criteria[self.indices]
-        level.acceleration_normaliser = self._acceleration_cost(optimum.problem, w)
+        level.acceleration_normaliser = float(values[-1])
         return level, weights / weights.sum()
 
     def restated(self, theta: np.ndarray, criteria: np.ndarray) -> tuple[np.ndarray, float]:

@@ -9,9 +9,9 @@ velocities bend within a few milliseconds. Then they are unknowns like the weigh
 
 with all given states X, the optimal arcs q*(theta, X) between them, coordinates of single frames and what their markers
 tell of them, G = J'J (to first order these are the markers' own distances), and the conditions c of planted feet.
-Gauss-Newton with Marquardt's damping; X is eliminated from each step, and the covariance of the weights is the marginal
-one. The criteria are divided by their values on the estimated optimum itself, and sigma is the markers' own misfit:
-both are renewed until they stay.
+Gauss-Newton with Marquardt's damping, see `node_damping`; X is eliminated from each step, and the covariance of the
+weights is the marginal one. The criteria are divided by their values on the estimated optimum itself, less what noise
+adds to them, and sigma is the markers' own misfit: both are renewed until they stay.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.linalg import cho_factor, cho_solve, qr
+from scipy.linalg import cho_factor, cho_solve, null_space, qr, solve_triangular
 
 from ..bilevel.result import WeightEstimate
 from ..bilevel.simplex_step import simplex_minimiser
@@ -28,9 +28,15 @@ from ..bilevel.uncertainty import weight_uncertainty
 from ..nlp.sparse_solution import SparseSolution, Status
 from .given_states import StateConditions, sampling_table, spread_moves
 from .identification import WalkLevel, WalkOptimum
+from .node_damping import NodeDamping
 from .tracking import MeasuredStride
 
 Progress = Callable[[int, float], None]
+
+FIRST = 10.0
+"""How much coarser the first round ends."""
+SMALL = 0.1
+"""Part of its standard deviation by which a weight may move in the last round."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,15 +95,22 @@ class JointSearch:
     rounds: int = 6
     """How often normalisers and standard deviations are renewed at most."""
     tol_round: float = 1e-3
-    """Ended when no weight moves by more in a round."""
+    """Ended when no weight moves by more in a round, beyond a tenth of its standard deviation."""
+    tol_loss: float = 0.1
+    """A round has converged when a step promises less; a change of the negative log likelihood by 0.5 is a standard
+    deviation."""
     tol_step: float = 1e-4
-    """A round has converged when no weight moves by more in a step."""
-    tol_decrease: float = 1e-3
-    """A round has converged when the loss falls by less, relatively."""
-    max_iter: int = 25
-    damping: float = 1e-4
-    """First Marquardt factor, relative to the diagonal."""
-    max_damping: float = 1e2
+    """It has also converged where no step helps and none tried would move a weight by more."""
+    max_iter: int = 40
+    attempts: int = 8
+    """Steps tried in an iteration, each held back more."""
+    posture: float = 0.01
+    """Step of a given coordinate that a damping of one holds back [m, rad]."""
+    velocity: float = 0.3
+    """The same of its velocity [m/s, rad/s]."""
+    least_damping: float = 0.03
+    draws: int = 20
+    """Pairs of walks drawn from what the estimate leaves open, for the noise in its normalisers."""
 
     def solve(
         self,
@@ -111,18 +124,27 @@ class JointSearch:
         `progress(iteration, rms)` may raise `errors.Cancelled`.
         """
         theta, optimum = start
-        iterations, lower_iterations, settled = 0, 0, False
-        run = _Run(self, frames, max(frames.noise, self.least_sigma), _State(level, theta, optimum), progress)
-        for _ in range(self.rounds):
-            run.search()
+        iterations, lower_iterations = 0, 0
+        damping = NodeDamping(
+            scale=np.repeat([self.posture, self.velocity], level.given.shape[1] // 2),
+            factors=np.ones(len(level.given)),
+            least=self.least_damping,
+        )
+        sigma = max(frames.noise, self.least_sigma)
+        run = _Run(self, frames, sigma, _State(level, theta, optimum), damping, progress)
+        for k in range(self.rounds):
+            # Normalisers of the first round are those of the start: it need not end exactly.
+            run.search(self.tol_loss if k else FIRST * self.tol_loss)
             iterations, lower_iterations = iterations + run.iterations, lower_iterations + run.lower_iterations
-            moved = float(np.max(np.abs(run.state.theta - theta)))
-            settled = run.converged and moved <= self.tol_round
+            found = run.estimate(iterations, lower_iterations)
+            moved, sds = np.abs(run.state.theta - theta), np.sqrt(np.diag(found.covariance))
+            settled = run.converged and bool(np.all(moved <= self.tol_round + SMALL * sds))
             if settled or not run.converged:
                 break
             run = run.renewed()
             theta = run.state.theta
-        return run.state.level, run.estimate(settled, iterations, lower_iterations)
+        reason = "converged: weights, states and normalisers stay" if settled else "weights and states do not settle"
+        return run.state.level, replace(found, converged=settled, reason=reason)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,15 +178,15 @@ class _Run:
     sigma: float
     """Standard deviation of a marker's coordinate [m]."""
     state: _State
+    damping: NodeDamping
     progress: Progress | None
-    damping: float = field(init=False)
+    loss: float = field(init=False)
     converged: bool = False
     iterations: int = 0
     lower_iterations: int = 0
 
     def __post_init__(self) -> None:
         level, method = self.state.level, self.method
-        self.damping = method.damping
         self.table = sampling_table(level.tracked.stride.times, self.frames.times)  # (n_frames, N + 1, 2)
         self.conditions = StateConditions(
             structure=level.structure,
@@ -173,26 +195,49 @@ class _Run:
             place=method.place,
             speed=method.speed,
         )
+        self.loss = self._loss(self.state)
 
-    def search(self) -> None:
-        """Improve the state until the weights stay."""
-        loss = self._loss(self.state)
+    def search(self, tol_loss: float) -> None:
+        """Improve the state until no step promises more than `tol_loss`."""
         for _ in range(self.method.max_iter):
             self.iterations += 1
             if self.progress is not None:
                 self.progress(self.iterations, float(np.sqrt(np.mean(self.misfit(self.state) ** 2))))
-            lin = self._linearised()
-            found, new = self._step(lin, loss)
-            if found is None:
-                # No step improves the fit any more: as good as it gets, if the steps are small.
-                self.converged = new <= self.method.tol_step
+            if self._is_at_rest(self._linearised(), tol_loss):
                 return
-            moved = float(np.max(np.abs(found.theta - self.state.theta)))
-            decrease = (loss - new) / loss
-            self.state, loss = found, new
-            if moved <= self.method.tol_step or decrease <= self.method.tol_decrease:
+
+    def _is_at_rest(self, lin: _Linearised, tol_loss: float) -> bool:
+        """Take a step that lowers the loss; true if there is none."""
+        surprised, size = np.zeros(len(self.state.level.given) - 1, dtype=bool), np.inf
+        for attempt in range(self.method.attempts):
+            theta, given_step = self._subproblem(lin)
+            size = float(np.max(np.abs(theta - self.state.theta)))
+            expected = lin.r + lin.by_theta @ (theta - self.state.theta) + lin.by_states @ given_step.ravel()
+            promised = self.loss - 0.5 * float(expected @ expected)
+            if attempt == 0 and promised <= tol_loss:
                 self.converged = True
-                return
+                return True
+            trial = self._moved(lin, theta, given_step)
+            # An arc that was not solved ends far from where it was expected.
+            now = self._worse_than(expected, trial) > 0.25 * max(promised, tol_loss)
+            new = self._loss(trial)
+            if trial.optimum.solution.status is Status.SOLVED and new < self.loss:
+                self.damping.ease(surprised | now)
+                self.state, self.loss = trial, new
+                return False
+            self.damping.hold(now, attempt)
+            surprised |= now
+        self.converged = size <= self.method.tol_step
+        return True
+
+    def _worse_than(self, expected: np.ndarray, trial: _State) -> np.ndarray:
+        """How much worse each arc fits than expected from residuals (n_m + n_c,), shape (n_given - 1,)."""
+        level, n_arcs = trial.level, len(trial.level.given) - 1
+        starts = level.tracked.stride.times[level.given_nodes]
+        arc = np.clip(np.searchsorted(starts, self.frames.times, side="right") - 1, 0, n_arcs - 1)
+        white = self._white(trial)
+        excess = 0.5 * np.sum(white**2 - expected[: white.size].reshape(white.shape) ** 2, axis=1)
+        return np.bincount(arc, excess, n_arcs)
 
     def misfit(self, state: _State) -> np.ndarray:
         """Optimal minus measured coordinates at the frames [m, rad], shape (n_frames, n_q)."""
@@ -226,31 +271,14 @@ class _Run:
             moves=moves,
         )
 
-    def _step(self, lin: _Linearised, loss: float) -> tuple[_State | None, float]:
-        """A better state and its loss, or None and the size of the last step in the weights that was tried."""
-        size = np.inf
-        while self.damping <= self.method.max_damping:
-            theta, given_step = self._subproblem(lin)
-            size = float(np.max(np.abs(theta - self.state.theta)))
-            trial = self._moved(lin, theta, given_step)
-            if trial.optimum.solution.status is Status.SOLVED:
-                new = self._loss(trial)
-                if new < loss:
-                    self.damping = max(self.damping / 5.0, 1e-9)
-                    return trial, new
-            self.damping *= 10.0
-        return None, size
-
     def _subproblem(self, lin: _Linearised) -> tuple[np.ndarray, np.ndarray]:
         """Weights and the step of the given states, (n_theta,) and (n_given, 2 n_q), that minimise the damped model."""
         a, b = lin.by_theta, lin.by_states
         inner = b.T @ b
-        inner[np.diag_indices_from(inner)] *= 1.0 + self.damping
+        inner[np.diag_indices_from(inner)] += self.damping.diagonal
         factors = cho_factor(inner)
         mixed, pull = b.T @ a, b.T @ lin.r
-        outer = a.T @ a
-        outer[np.diag_indices_from(outer)] *= 1.0 + self.damping
-        hessian = outer - mixed.T @ cho_solve(factors, mixed)
+        hessian = a.T @ a - mixed.T @ cho_solve(factors, mixed)
         gradient = a.T @ lin.r - mixed.T @ cho_solve(factors, pull)
         theta = simplex_minimiser(self.state.theta, gradient, hessian)
         step = -cho_solve(factors, pull + mixed @ (theta - self.state.theta))
@@ -259,9 +287,13 @@ class _Run:
     def _moved(self, lin: _Linearised, theta: np.ndarray, step: np.ndarray) -> _State:
         level = self.state.level.with_given(self.state.level.given + step)
         start = self._predicted(lin.moves, theta - self.state.theta, step)
-        optimum = level.respond_nearby(theta, start)
-        self.lower_iterations += optimum.solution.iterations
-        return _State(level, theta, optimum)
+        trial = _State(level, theta, level.respond_nearby(theta, start))
+        self.lower_iterations += trial.optimum.solution.iterations
+        if trial.optimum.solution.status is not Status.SOLVED and self._loss(trial) < self.loss:
+            # Unfinished, but worth pursuing.
+            trial = _State(level, theta, level.respond(theta, start))
+            self.lower_iterations += trial.optimum.solution.iterations
+        return trial
 
     def _predicted(self, moves: np.ndarray, theta_step: np.ndarray, step: np.ndarray) -> SparseSolution:
         """First-order prediction, arc by arc: each follows its own two given states."""
@@ -276,7 +308,7 @@ class _Run:
 
     def renewed(self) -> "_Run":
         """The next round: normalisers and standard deviations of the state that was found."""
-        level, theta = self.state.level.normalised_at(self.state.optimum, self.state.theta)
+        level, theta = self.state.level.normalised_at(self.state.optimum, self.state.theta, self._inflation())
         freedom = 1.0 - self.state.level.given.size / self.frames.q.size
         sigma = self.sigma * float(np.sqrt(np.mean(self._white(self.state) ** 2) / max(freedom, 0.1)))
         optimum = level.respond(theta, self.state.optimum.solution)
@@ -285,26 +317,50 @@ class _Run:
             self.frames,
             max(sigma, self.method.least_sigma),
             _State(level, theta, optimum),
+            self.damping,
             self.progress,
         )
 
-    def estimate(self, settled: bool, iterations: int, lower_iterations: int) -> WeightEstimate:
-        """The result, with the marginal covariance of the weights."""
+    def _inflation(self) -> np.ndarray:
+        """What the noise adds to the normalisers on average, to second order; as `WalkLevel.normaliser_values`.
+
+        Criteria are sums of squares, so that errors of the given states make them larger: by a quarter for the floor of
+        accelerations of a demo walk at 0.5 mm. Mean over pairs of walks on both sides of the estimate, drawn from its
+        covariance.
+        """
+        lin, state, damping = self._linearised(), self.state, self.damping
+        tangent = null_space(np.ones((1, state.level.n_theta)))
+        bound = np.sqrt(damping.least) / np.tile(damping.scale, len(state.level.given))
+        n_t = tangent.shape[1]
+        rows = np.vstack([np.hstack([lin.by_theta @ tangent, lin.by_states]), np.eye(n_t + bound.size)[n_t:]])
+        rows[len(lin.r) :, n_t:] *= bound
+        root = qr(rows, mode="r")[0][: rows.shape[1]]
+        draws = solve_triangular(root, np.random.default_rng(0).standard_normal((rows.shape[1], self.method.draws)))
+        middle = state.level.normaliser_values(state.optimum.problem, state.optimum.solution.w)
+        both = [
+            state.level.normaliser_values(state.optimum.problem, self._predicted(lin.moves, *each).w)
+            for draw in draws.T
+            for sign in (1.0, -1.0)
+            for each in [(sign * tangent @ draw[:n_t], sign * draw[n_t:].reshape(state.level.given.shape))]
+        ]
+        return np.mean(both, axis=0) - middle
+
+    def estimate(self, iterations: int, lower_iterations: int) -> WeightEstimate:
+        """What was found so far, with the marginal covariance of the weights."""
         lin, white = self._linearised(), self._white(self.state)
         basis = qr(lin.by_states, mode="economic")[0]
         marginal = lin.by_theta - basis @ (basis.T @ lin.by_theta)
         # The states between arcs take degrees of freedom.
         freedom = max(1.0 - self.state.level.given.size / white.size, 0.1)
         uncertainty = weight_uncertainty(marginal, white / np.sqrt(freedom))
-        reason = "converged: weights, states and normalisers stay" if settled else "weights and states do not settle"
         return WeightEstimate(
             theta=self.state.theta,
             response=self.state.optimum,
             covariance=uncertainty.covariance,
             identifiable=uncertainty.identifiable,
             condition=uncertainty.condition,
-            converged=settled,
-            reason=reason,
+            converged=False,
+            reason="under way",
             iterations=iterations,
             lower_iterations=lower_iterations,
         )

@@ -10,6 +10,7 @@ from gaitlab.transcription.mechanical_layout import Boundary, MechanicalLayout
 from gaitlab.walking.given_states import StateCondition, sampling_table, spread_moves, state_conditions
 from gaitlab.walking.identification import IdentificationSettings, WalkLevel
 from gaitlab.walking.joint_search import JointSearch, MeasuredFrames, _Run, _State  # pyright: ignore[reportPrivateUsage]
+from gaitlab.walking.node_damping import NodeDamping
 from gaitlab.walking.tracking import track
 
 HEEL, N_F = (0, 1, 2), 3
@@ -70,7 +71,8 @@ def run():
     zero = np.zeros((n, n_q))
     frames = MeasuredFrames(times=times, q=zero, little_smoothed=zero, information=information, noise=1.0)
     state = _State(level, theta, level.from_tracking(theta))
-    return _Run(JointSearch(), frames, 1.0, state, None)
+    damping = NodeDamping(scale=np.ones(2 * n_q), factors=np.ones(len(level.given)), least=1.0)
+    return _Run(JointSearch(), frames, 1.0, state, damping, None)
 
 
 def test_residuals_follow_weights_and_given_states_as_their_derivatives_say(run):
