@@ -15,7 +15,11 @@ CURVE_FLOOR = 3.0
 """Differences up to this are never flagged, however alike the others are [deg]."""
 RELATIVE_FLOOR = 0.1
 """The same for distances and times, part of their median."""
-_TESTED = {"stride_length_m": "stride length", "stride_time_s": "stride time", "speed_m_per_s": "speed"}
+_TESTED = {
+    "stride_length_m": ("stride length", "m"),
+    "stride_time_s": ("stride time", "s"),
+    "speed_m_per_s": ("speed", "m/s"),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,9 +54,9 @@ def outlier_reasons(
         for index, distance, limit in _far_curves(values):
             words = name.replace("_", " ")
             reasons[index].append(f"{words} is {distance:.1f} deg rms from the median stride (limit {limit:.1f})")
-    for field, words in _TESTED.items():
+    for field, (words, unit) in _TESTED.items():
         for index, value, median in _far_numbers([getattr(cycle, field) for cycle in distances]):
-            reasons[index].append(f"{words} {value:.2f} (median {median:.2f})")
+            reasons[index].append(f"{words} {value:.2f} {unit} (median {median:.2f} {unit})")
     return [tuple(found) for found in reasons]
 
 

@@ -49,6 +49,7 @@ def interpret(raw: RawRecording, name: str, sha256: str) -> Recording:
     outputs = {label: raw.points[:, k].copy() for label, k in sorted_points.outputs.items()}
     turned = () if vertical == "+z" else (f"the file's vertical axis is {vertical}; it is turned so that z points up",)
     said = sorted_points.warnings + unit_warnings + turned + plate_warnings + event_warnings + parameter_warnings
+    channels, units = _other_channels(raw), raw.numbered_texts("ANALOG", "UNITS")
     return Recording(
         name=name,
         sha256=sha256,
@@ -60,7 +61,8 @@ def interpret(raw: RawRecording, name: str, sha256: str) -> Recording:
         events=events,
         sole_changes=file_sole_changes(raw),
         parameters=parameters,
-        analog=_other_channels(raw),
+        analog={label: raw.analog[:, k].copy() for label, k in channels.items()},
+        analog_units={label: units[k] for label, k in channels.items() if k < len(units) and units[k]},
         analog_rate=raw.analog_rate,
         warnings=said + privacy_warnings(raw),
     )
@@ -117,14 +119,14 @@ def _marks(raw: RawRecording, wanted: Collection[str]) -> tuple[list[tuple[Side,
     return sorted(marks, key=lambda mark: mark[2]), outside
 
 
-def _other_channels(raw: RawRecording) -> dict[str, np.ndarray]:
-    """Analogue channels that belong to no force plate, by label; equal labels get a number."""
+def _other_channels(raw: RawRecording) -> dict[str, int]:
+    """Columns of the analogue channels that belong to no force plate, by label; equal labels get a number."""
     labels = raw.numbered_texts("ANALOG", "LABELS")
     used = plate_channels(raw)
-    channels: dict[str, np.ndarray] = {}
+    channels: dict[str, int] = {}
     for k in range(raw.analog.shape[1]):
         if k in used:
             continue
         label = labels[k] if k < len(labels) and labels[k] else f"channel {k + 1}"
-        channels[label if label not in channels else f"{label} ({k + 1})"] = raw.analog[:, k].copy()
+        channels[label if label not in channels else f"{label} ({k + 1})"] = k
     return channels

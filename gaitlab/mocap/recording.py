@@ -71,6 +71,8 @@ class Recording:
     """Subject parameters in SI units: mass, height, left_leg_length, left_knee_width, left_thigh_rotation ..."""
     analog: Mapping[str, np.ndarray] = field(default_factory=dict[str, np.ndarray])
     """Analogue channels other than force plates, for instance EMG, file's units, shape (n_samples,)."""
+    analog_units: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Label to the unit that the file states for the channel; without those that it leaves blank."""
     analog_rate: float = 0.0
     """Samples per second of `analog` [Hz]."""
     warnings: tuple[str, ...] = ()

@@ -1,7 +1,7 @@
 """Kinetics and EMG of one walk, cut into cycles, and their part of the document."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -54,6 +54,8 @@ class TrialKinetics:
     """Why there is nothing, sentences."""
     warnings: tuple[str, ...]
     """About plate contacts that are not used."""
+    emg_units: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Label to the unit that the file states."""
 
 
 def trial_kinetics(
@@ -80,6 +82,7 @@ def trial_kinetics(
         kinetics=solved,
         curves=curves,
         emg=_cut_emg(recording, found),
+        emg_units=recording.analog_units,
         missing=missing,
         warnings=warnings,
     )
@@ -159,7 +162,7 @@ def emg_entry(trials: Sequence[TrialKinetics]) -> EmgEntry | None:
     if not labels:
         return None
     curves = [trial.emg for trial in trials]
-    envelopes = {label: _unit_curve(curves, label, "file's unit") for label in labels}
+    envelopes = {label: _unit_curve(curves, label, _emg_unit(trials, label)) for label in labels}
     return EmgEntry(
         envelopes=envelopes,
         filter=FILTER,
@@ -167,6 +170,12 @@ def emg_entry(trials: Sequence[TrialKinetics]) -> EmgEntry | None:
         activity_rule=RULE,
         muscles={label: muscle for label in labels if (muscle := emg_muscle(label)) is not None},
     )
+
+
+def _emg_unit(trials: Sequence[TrialKinetics], label: str) -> str:
+    """Unit of a channel where all files that hold it state the same one."""
+    units = {trial.emg_units.get(label, "") for trial in trials if label in trial.emg}
+    return next(iter(units)) if len(units) == 1 and "" not in units else "file's unit"
 
 
 def _activity(curve: UnitCurve) -> dict[Side, list[Span]]:

@@ -31,7 +31,8 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     caption: str = ""
     kind: str = ""
-    """Look: sides (second and third column in the sides' colours), facts (no header, text), inputs, text, narrow."""
+    """Look: sides (second and third column in the sides' colours), sides beside (the
+    same, in two halves on paper when it is long), facts (no header, text), inputs, text, narrow."""
 
 
 @dataclass(frozen=True, kw_only=True)

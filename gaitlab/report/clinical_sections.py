@@ -1,6 +1,6 @@
 """Sections of the clinical part: who and what, kinematics page, spatiotemporal table, events."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from ..clinical.document import CURVES, SIDES
 from .blocks import Block, Section, Table, facts, missing, paragraph, picture, section, table
@@ -99,8 +99,8 @@ def _marks(side: Mapping[str, object]) -> Marks:
     )
 
 
-def kinematics_section(result: Result) -> Section:
-    """Average page: mean and standard deviation of each curve over the cycles."""
+def kinematics_section(result: Result, beside: Sequence[Block] = ()) -> Section:
+    """Average page: mean and standard deviation of each curve over the cycles; `beside` stands below the curves."""
     if not any(result.kinematics.get(name) for name in CURVES):
         why = "no side has a complete cycle with all markers" if result.kinematics else "result.json holds none"
         return section("Kinematics", missing("joint angles over the gait cycle", why))
@@ -114,7 +114,7 @@ def kinematics_section(result: Result) -> Section:
     average = average_figure(result.kinematics, marks_of(result), norms_of(result))
     lead = paragraph(_cycles_used(result), "lead")
     conventions = paragraph(f"{_CONVENTIONS} {_forward(result)}", "note")
-    return section("Kinematics", lead, picture(average), conventions, gap)
+    return section("Kinematics", lead, picture(average), conventions, *beside, gap)
 
 
 def _forward(result: Result) -> str:
@@ -189,12 +189,23 @@ def _with_sd(key: str, means: Mapping[str, object], deviations: Mapping[str, obj
 
 
 def events_section(result: Result) -> Section:
-    """Table of the gait events and where they come from."""
+    """Tables of the gait events and where they come from, one per trial: each has a clock of its own."""
     if not result.events:
         return section("Gait events", missing("gait events", "result.json lists none"))
-    rows = [
-        (f"{e.time:.3f}", e.side, e.kind.replace("_", " "), e.source)
-        for e in sorted(result.events, key=lambda e: e.time)
-    ]
+    trials = dict[str, list[tuple[float, str, str, str]]]()
+    for event in map(mapping, result.parts("events")):
+        time = real(event.get("time_s"))
+        if time is not None:
+            words = (str(event.get("side")), str(event.get("kind")).replace("_", " "), str(event.get("source")))
+            trials.setdefault(str(event.get("trial") or ""), []).append((time, *words))
     header = ("time [s]", "side", "event", "source")
-    return section("Gait events", table(header, rows, "Times from the first stored frame", "narrow"))
+    tables = [
+        table(
+            header,
+            [(f"{time:.3f}", *words) for time, *words in sorted(rows)],
+            f"{name}: times from the first stored frame" if len(trials) > 1 else "Times from the first stored frame",
+            "narrow",
+        )
+        for name, rows in trials.items()
+    ]
+    return section("Gait events", *tables)

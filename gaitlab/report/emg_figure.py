@@ -18,20 +18,24 @@ from .svg import Axes, figure, rectangle, text
 _WIDTH, _COLUMN, _ROW = 1000.0, 325.0, 150.0
 _TOP, _PANEL_WIDTH, _PANEL_HEIGHT = 26.0, 245.0, 94.0
 _LEGEND = 132.0
-_TOP_OF_SCALE = 155.0  # [%]; curves with their bands reach about 110, bars stand above
+_TOP_OF_SCALE = 160.0  # [%]; curves with their bands reach about 110, bars stand above
 _BAR = 5.0
+_BAR_ROW = 11.0
+"""From one row of bars to the next: the height of a letter."""
 _NORM = "#8a949e"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Activity:
-    """When muscles are active, and what the channels are called in norms."""
+    """When muscles are active, what the channels are called in norms, and their units."""
 
     spans: Mapping[str, Mapping[str, Sequence[Span]]] = field(default_factory=dict[str, Mapping[str, Sequence[Span]]])
     """Label to side to start and end [%]."""
     muscles: Mapping[str, str] = field(default_factory=dict[str, str])
     """Label to the name of its muscle in norms."""
     rule: str = ""
+    units: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Label to the unit that the file states."""
 
 
 def activity_of(result: Result) -> Activity:
@@ -44,6 +48,10 @@ def activity_of(result: Result) -> Activity:
         },
         muscles={label: str(muscle) for label, muscle in mapping(part.get("muscles")).items()},
         rule=str(part.get("activity_rule") or ""),
+        units={
+            label: str(mapping(curve).get("unit") or "file's unit")
+            for label, curve in mapping(part.get("envelopes")).items()
+        },
     )
 
 
@@ -63,7 +71,10 @@ def emg_figure(
     `norms` may hold envelopes by the names of muscles among its curves.
     """
     activity = activity or Activity()
-    panels = [_panel(label, curves, index, marks) for index, (label, curves) in enumerate(envelopes.items())]
+    units = {label: activity.units.get(label, "") for label in envelopes}
+    panels = [
+        _panel(label, curves, index, marks, units[label]) for index, (label, curves) in enumerate(envelopes.items())
+    ]
     bars = [_bars(label, index, activity, norms) for index, label in enumerate(envelopes)]
     bottom = _TOP + _ROW * ((len(envelopes) + 2) // 3)
     lines = ("coloured band: ± 1 standard deviation between cycles", *_bar_legend(envelopes, activity, norms))
@@ -89,10 +100,12 @@ def _axes(index: int) -> Axes:
     return Axes(**corner, **size, x_range=(0.0, 100.0), y_range=(0.0, _TOP_OF_SCALE))
 
 
-def _panel(label: str, curves: Mapping[str, Curve], index: int, marks: Mapping[str, Marks]) -> str:
+def _panel(label: str, curves: Mapping[str, Curve], index: int, marks: Mapping[str, Marks], unit: str) -> str:
     extent = mean_range(curves)
     highest = extent[1] if extent is not None and extent[1] > 0.0 else 1.0
-    panel = CyclePanel(name=label, title=label, axes=_axes(index), direction=f"% of {highest:.2g}", x_label=True)
+    panel = CyclePanel(
+        name=label, title=label, axes=_axes(index), direction=f"% of {highest:.2g} {unit}".strip(), x_label=True
+    )
     own = {side: mark for side, mark in marks.items() if side in curves}
     scaled = {side: _scaled(curve, 100.0 / highest) for side, curve in curves.items()}
     return cycle_panel(panel, averages(panel.axes, scaled), None, own)
@@ -110,8 +123,8 @@ def _bars(label: str, index: int, activity: Activity, norms: Norms) -> str:
         rows.append(("N", _NORM, active_spans(reference.mean)))
     parts = list[str]()
     for number, (letter, colour, spans) in enumerate(rows):
-        top = axes.top + 2.0 + (_BAR + 4.0) * number
-        parts.append(text(letter, axes.right + 4.0, top + _BAR + 1.5, **{"class": "tick"}))
+        top = axes.top + 2.0 + _BAR_ROW * number
+        parts.append(text(letter, axes.right + 4.0, top + _BAR + 3.0, **{"class": "tick"}, style="font-size:10px"))
         for start, end in spans:
             words = {"fill": colour, "data_bar": letter}
             parts.append(rectangle(axes.x(start), top, axes.x(end) - axes.x(start), _BAR, **words))

@@ -16,6 +16,7 @@ _UNITS = {
     "_mm": "mm",
     "_hz": "Hz",
     "_kg": "kg",
+    "_nm_per_kg": "N·m/kg",
     "_m": "m",
     "_s": "s",
     "_n": "N",

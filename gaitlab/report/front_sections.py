@@ -1,11 +1,10 @@
-"""The front page and the page of the clinical examination."""
-
-from collections.abc import Sequence
+"""The front page."""
 
 from ..clinical.document import SIDES
-from ..clinical.examination import Examination, JointRange, Spasticity, Strength
-from .blocks import Block, Section, Table, bullets, missing, paragraph, section, table
+from ..clinical.examination import Examination
+from .blocks import Block, Section, Table, bullets, paragraph, section, table
 from .clinical_sections import spatiotemporal_cells
+from .examination_sections import NO_EXAMINATION
 from .formatting import ABSENT, fixed, label
 from .quality_sections import warnings_section
 from .result import Result, mapping, real, sequence
@@ -14,8 +13,6 @@ from .source import Source
 from .wording import CAVEAT, cohort_weights, weights_in_words
 
 _SHOWN = ("speed_m_per_s", "cadence_steps_per_min", "step_length_m", "step_width_m", "foot_off_percent")
-_Entry = JointRange | Strength | Spasticity
-NO_EXAMINATION = "no examination file was given (gaitlab report --examination FILE)"
 
 
 def front_sections(source: Source) -> tuple[Section, ...]:
@@ -120,68 +117,3 @@ def absences(source: Source) -> list[str]:
     if source.examination is None:
         sentences.append(f"clinical examination and condition: {NO_EXAMINATION}")
     return sentences
-
-
-def examination_sections(source: Source) -> tuple[Section, ...]:
-    """What the examiner found, in tables of left and right."""
-    title = "Clinical examination and condition"
-    found = source.examination
-    if found is None:
-        return (section(title, missing("clinical examination and condition", NO_EXAMINATION)),)
-    tables = [*_ranges(found), *_graded(found.strength, "Strength, grade 0 to 5 (MRC)")]
-    tables += _graded(found.spasticity, "Spasticity, modified Ashworth scale")
-    absent = [
-        words
-        for words, entries in (
-            ("joint ranges", found.ranges),
-            ("strength", found.strength),
-            ("spasticity", found.spasticity),
-        )
-        if not entries
-    ]
-    notes = bullets(found.notes) if found.notes else None
-    gap = missing(", ".join(absent), "the examination file holds none") if absent else None
-    return (section(title, _condition(found), *tables, notes, gap),)
-
-
-def _condition(found: Examination) -> Table:
-    level = "not stated" if found.patient.gmfcs is None else f"level {'I II III IV V'.split()[found.patient.gmfcs - 1]}"
-    rows = [
-        ("Diagnosis", found.patient.diagnosis or "not stated"),
-        ("GMFCS", level),
-        ("Examined by", found.session.examiner or "not stated"),
-        ("Footwear", found.condition.footwear or "not stated"),
-        ("Orthosis", found.condition.orthosis or "not stated"),
-        ("Walking aid", found.condition.walking_aid or "not stated"),
-        *([("Remark", found.condition.note)] if found.condition.note else []),
-    ]
-    return table(("", ""), rows, kind="facts")
-
-
-def _ranges(found: Examination) -> list[Block]:
-    rows = [
-        (f"{entry.joint} {entry.motion}", *(ABSENT if v is None else f"{v:g}" for v in (entry.left, entry.right)))
-        + _remark(entry, found.ranges)
-        for entry in found.ranges
-    ]
-    return _two_sided(rows, "Passive joint ranges [deg]")
-
-
-def _graded(entries: Sequence[Strength | Spasticity], caption: str) -> list[Block]:
-    rows = [
-        (entry.muscle, *(ABSENT if v is None else str(v) for v in (entry.left, entry.right))) + _remark(entry, entries)
-        for entry in entries
-    ]
-    return _two_sided(rows, caption)
-
-
-def _remark(entry: _Entry, all_of_them: Sequence[_Entry]) -> tuple[str, ...]:
-    """A cell of its own where any entry has a remark."""
-    return (entry.note,) if any(other.note for other in all_of_them) else ()
-
-
-def _two_sided(rows: Sequence[tuple[str, ...]], caption: str) -> list[Block]:
-    if not rows:
-        return []
-    header = ("", "left", "right", "remark")[: len(rows[0])]
-    return [table(header, rows, caption, "sides")]

@@ -11,7 +11,8 @@ from .clinical_sections import (
     spatiotemporal_section,
 )
 from .consistency_sections import angles_section, kinetics_cycles_section
-from .front_sections import examination_sections, front_sections
+from .examination_sections import beside_curves, examination_sections
+from .front_sections import front_sections
 from .kinetics_sections import emg_sections, kinetics_sections
 from .prediction_sections import prediction_sections
 from .provenance_sections import provenance_sections
@@ -61,7 +62,7 @@ def report_pages(source: Source, program: Mapping[str, str], keys: Sequence[str]
     makers: dict[str, Callable[[], tuple[Section, ...]]] = {
         "front": lambda: front_sections(source),
         "examination": lambda: examination_sections(source),
-        "kinematics": lambda: (kinematics_section(overall),),
+        "kinematics": lambda: (kinematics_section(overall, beside_curves(source.examination)),),
         "consistency": lambda: (angles_section(source), strides_section(overall), kinetics_cycles_section(source)),
         "kinetics": lambda: kinetics_sections(overall),
         "emg": lambda: emg_sections(overall),

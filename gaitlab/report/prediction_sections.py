@@ -37,10 +37,7 @@ def prediction_sections(result: Result) -> tuple[Section, ...]:
             table(("Quantity", "Asked for", "Reached", "Unit"), changed) if changed else paragraph("Nothing changed."),
             table(
                 ("", "Identified", "Predicted"),
-                [
-                    (name.replace("_", " "), fixed(real(old.get(name)), 3), fixed(real(new.get(name)), 3))
-                    for name in names
-                ],
+                [(label(name), fixed(real(old.get(name)), 3), fixed(real(new.get(name)), 3)) for name in names],
                 caption="What it changes",
             ),
             table(

@@ -33,7 +33,7 @@ def profile_figure(
         cohort: Mean scores of the reference cohort's own persons [deg], by variable and `gps`; may be empty.
     """
     n = len(VARIABLES) + 1
-    axes = Axes(left=66.0, top=50.0, width=920.0, height=190.0, x_range=(0.0, float(n)), y_range=(0.0, HIGHEST))
+    axes = Axes(left=66.0, top=62.0, width=920.0, height=190.0, x_range=(0.0, float(n)), y_range=(0.0, HIGHEST))
     parts = [
         frame(axes, (), (0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0)),
         text("GVS and GPS [deg], smaller is closer to the reference", 66.0, 24.0, **{"class": "note"}),
@@ -59,9 +59,10 @@ def _column(axes: Axes, place: int, name: str, values: Mapping[str, float | None
         top = axes.y(min(value, HIGHEST))
         colour = SIDE.get(who, CENTRE)
         parts.append(rectangle(x + 2.0, top, _BAR - 4.0, axes.bottom - top, fill=colour))
-        words = f"{value:.1f}" + ("↑" if value > HIGHEST else "")
+        # A number with an arrow is wider than its bar: it stands a line higher than its neighbours.
+        words, above = (f"{value:.1f}↑", 17.0) if value > HIGHEST else (f"{value:.1f}", 4.0)
         place_of = {"class": "tick", "text_anchor": "middle"}
-        parts.append(text(words, x + _BAR / 2.0, top - 4.0, **place_of))
+        parts.append(text(words, x + _BAR / 2.0, top - above, **place_of))
     if not known:
         parts.append(text("–", middle, axes.bottom - 6.0, **{"class": "note", "text_anchor": "middle"}))
     return "".join(parts)

@@ -22,11 +22,16 @@ def warnings_section(results: list[tuple[str, Result]]) -> Section:
 
 
 def quality_sections(result: Result) -> tuple[Section, ...]:
-    """Gaps, calibration, residuals, and whatever else the document says about quality."""
+    """Gaps, plates, calibration, residuals, and whatever else the document says about quality."""
     quality = dict(result.part("quality"))
     if not quality:
         return (section("Quality", missing("quality of the data", "result.json says nothing about it")),)
-    parts = [_gaps(quality.pop("gaps", None)), *_calibration(quality.pop("calibration", None)), *_residuals(quality)]
+    parts = [
+        _gaps(quality.pop("gaps", None)),
+        _plates(result),
+        *_calibration(quality.pop("calibration", None)),
+        *_residuals(quality),
+    ]
     rest = {key: value for key, value in quality.items() if value not in (None, {}, [])}
     return (section("Quality", *parts, facts(rest, "Other") if rest else None),)
 
@@ -46,6 +51,17 @@ def _gaps(value: object) -> Block:
         for gap in gaps
     ]
     return table(("marker", "trial", "from [s]", "to [s]", "what was done"), rows, "Gaps in the markers")
+
+
+def _plates(result: Result) -> Block:
+    """How many contacts with force plates were used, and why the others were not; the page on kinetics lists them."""
+    contacts = [mapping(item) for item in sequence(result.part("kinetics").get("contacts"))]
+    if not contacts:
+        return paragraph("Force plates: no contact, so there are no kinetics.")
+    refused = [str(c.get("reason") or "no reason stated") for c in contacts if c.get("accepted") is not True]
+    why = "; ".join(f"{reason} ({refused.count(reason)})" for reason in dict.fromkeys(refused))
+    used = f"Force plates: {len(contacts) - len(refused)} of {len(contacts)} contacts used"
+    return paragraph(f"{used}; not used: {why}." if refused else f"{used}.")
 
 
 def _calibration(value: object) -> list[Block]:

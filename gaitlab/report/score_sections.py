@@ -120,7 +120,10 @@ def _consistency(values: Mapping[str, object]) -> Block:
         for name in CURVES
     ]
     header = ("", *(f"{words} {side}" for words in ("SD [deg]", "CMC") for side in SIDES))
-    caption = "SD: between strides, rms over the cycle. CMC: coefficient of multiple correlation (Kadaba 1989)"
+    caption = (
+        "SD: between strides, rms over the cycle. CMC: coefficient of multiple correlation (Kadaba 1989); – where "
+        "strides differ by as much as the curve moves"
+    )
     return table(header, rows, caption)
 
 

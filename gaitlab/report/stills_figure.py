@@ -138,7 +138,8 @@ def _letters(skeleton: _Skeleton, place: tuple[float, float]) -> str:
     for (_, child), ends, side in zip(skeleton.bones, _ends(skeleton, place), skeleton.sides, strict=True):
         if ends is not None and side is not None and int(child) not in parents:
             x, y = ends[1]
-            parts.append(text(side[0].upper(), x + 3.0, y + 1.0, fill=SIDE[side], **{"class": "title"}))
+            raised = 10.0 if side == "left" else -2.0  # so that both can be read where one foot passes the other
+            parts.append(text(side[0].upper(), x + 3.0, y - raised, fill=SIDE[side], **{"class": "title"}))
     return "".join(parts)
 
 

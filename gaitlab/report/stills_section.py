@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from ..clinical.document import SIDES
 from ..mocap.cycle import Cycle
 from ..mocap.cycles import cycles
@@ -44,12 +46,23 @@ def _moments(result: Result, walk: Walk) -> tuple[Moment, ...]:
 
 def explained_cycle(result: Result, walk: Walk) -> Cycle | None:
     """The stride that the weights explain, else the representative one, else the first one inside the recording."""
-    first, last = float(walk.time[0]), float(walk.time[-1])
-    every = [cycle for side in SIDES for cycle in cycles(result.events, side)]
-    inside = [cycle for cycle in every if first - CLOSE <= cycle.start and cycle.end <= last + CLOSE]
     wanted = [*_explained(result), *_representative(result)]
-    chosen = [cycle for stride in wanted for cycle in inside if _is(cycle, stride)]
-    return next(iter([*chosen, *inside]), None)
+    # Events may go on where the motion is unknown: a stride that can be drawn comes first.
+    for first, last in (_drawable(walk), (float(walk.time[0]), float(walk.time[-1]))):
+        every = [cycle for side in SIDES for cycle in cycles(result.events, side)]
+        inside = [cycle for cycle in every if first - CLOSE <= cycle.start and cycle.end <= last + CLOSE]
+        chosen = [cycle for stride in wanted for cycle in inside if _is(cycle, stride)]
+        if inside:
+            return [*chosen, *inside][0]
+    return None
+
+
+def _drawable(walk: Walk) -> tuple[float, float]:
+    """First and last time [s] with a measured skeleton; of the whole walk where there is none."""
+    positions = walk.vectors("segment_positions_measured")
+    known = walk.time if positions is None else walk.time[np.isfinite(positions).any(axis=(1, 2))]
+    times = known if known.size else walk.time
+    return float(times[0]), float(times[-1])
 
 
 def _explained(result: Result) -> list[Mapping[str, object]]:

@@ -57,3 +57,10 @@ def test_the_frame_of_moments_is_a_choice(analysed):
     curves = [np.array(r["kinetics"]["curves"]["hip_extensor_moment"]["left"]["mean"]) for r in (distal, proximal)]
     assert np.abs(curves[0] - curves[1]).max() > 0.02
     assert "the axes of the segment above the joint" in page
+
+
+def test_envelopes_have_the_unit_that_the_file_states(analysed):
+    result, _ = analysed(lambda walk: walk)
+    assert {curve["unit"] for curve in result["emg"]["envelopes"].values()} == {"V"}
+    unstated, _ = analysed(lambda walk: replace(walk, analog_units={}))
+    assert {curve["unit"] for curve in unstated["emg"]["envelopes"].values()} == {"file's unit"}

@@ -32,7 +32,7 @@ def test_small_differences_are_no_outliers_however_alike_the_others_are():
 def test_a_slow_stride_is_flagged():
     reasons = outlier_reasons({}, [distances(stride_time_s=t) for t in (1.0, 1.01, 0.99, 1.0, 1.6, 1.02)])
     assert [bool(found) for found in reasons] == [False] * 4 + [True, False]
-    assert reasons[4] == ("stride time 1.60 (median 1.00)",)
+    assert reasons[4] == ("stride time 1.60 s (median 1.00 s)",)
 
 
 def test_four_strides_are_too_few_to_judge():

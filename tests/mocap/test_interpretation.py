@@ -82,7 +82,7 @@ def test_length_units(unit, value, metres, warned):
 
 
 def test_channels_of_no_plate_are_kept_by_label():
-    parameters = {"ANALOG": {"LABELS": ("EMG", "EMG")}, "POINT": {"UNITS": ("mm",)}}
+    parameters = {"ANALOG": {"LABELS": ("EMG", "EMG"), "UNITS": ("V", "")}, "POINT": {"UNITS": ("mm",)}}
     read = interpret(raw_recording(parameters=parameters), "walk", "")
     assert set(read.analog) == {"EMG", "EMG (2)", "channel 3"}
-    assert read.analog_rate == 200.0
+    assert read.analog_rate == 200.0 and read.analog_units == {"EMG": "V"}

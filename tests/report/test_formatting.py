@@ -10,6 +10,7 @@ from gaitlab.report.formatting import label, plain, rows_of
         ("speed_m_per_s", "Speed [m/s]"),
         ("foot_off_percent", "Foot off [%]"),
         ("cadence_steps_per_min", "Cadence [steps/min]"),
+        ("left_knee_extensor_peak_nm_per_kg", "Left knee extensor peak [N·m/kg]"),
         ("name", "Name"),
     ],
 )

@@ -22,3 +22,10 @@ def test_bands_are_drawn_where_the_cohort_has_them():
 def test_a_cohort_of_angles_alone_has_no_band_here():
     markup = kinetics_figure({}, {}, Norms(description="Cohort", curves={"knee_flexion": BAND}))
     assert "no normative band" in markup and "<polygon" not in markup
+
+
+def test_moments_stand_in_rows_of_one_plane():
+    rows = {p.name: p.axes.top for p in PANELS}
+    assert rows["hip_extensor_moment"] == rows["knee_extensor_moment"] < rows["hip_abductor_moment"]
+    assert rows["hip_abductor_moment"] == rows["knee_abductor_moment"] == rows["ankle_evertor_moment"]
+    assert [p.x_label for p in PANELS] == [False] * 9 + [True] * 3

@@ -45,7 +45,7 @@ def page(tmp_path_factory):
         REASON,
         "not used: the left foot stood on it too",
         "Voltage.L Rect",
-        "% of 0.002",
+        "% of 0.002 V",
         "band-pass 20-450 Hz",
     ],
 )

@@ -5,7 +5,7 @@ from synthetic_output import BONES, document, walk_arrays, write_output
 from gaitlab.mocap.cycles import cycles
 from gaitlab.report.result import read_result
 from gaitlab.report.stills_figure import OPTIMAL, stills_figure, stride_moments
-from gaitlab.report.stills_section import stills_section
+from gaitlab.report.stills_section import explained_cycle, stills_section
 from gaitlab.report.walk_file import Walk
 
 
@@ -66,3 +66,14 @@ def test_frames_outside_the_stride_leave_the_optimum_away(result):
     optimal = np.full((241, 9, 3), np.nan)
     moments = stride_moments(cycles(result.events, "left")[0])
     assert "nan" not in stills_figure(walk(segment_positions_optimal=optimal), moments)
+
+
+def test_a_stride_that_can_be_drawn_is_preferred(result):
+    measured = walk_arrays()["segment_positions_measured"]
+    measured[:58] = np.nan  # the left foot's first stride starts at 0.05 s, the right foot's at 0.6 s
+    assert explained_cycle(result, walk(segment_positions_measured=measured)).start == 1.15
+
+
+def test_without_any_a_stride_inside_the_recording_is_taken(result):
+    nowhere = np.full((241, 9, 3), np.nan)
+    assert explained_cycle(result, walk(segment_positions_measured=nowhere)).start == 0.05
