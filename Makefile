@@ -18,8 +18,8 @@ help: ## this list
 demo: $(VENV)/.installed ## install, analyse the demo recordings, print the weights and the report's path
 	$(BIN)/gaitlab demo --out $(DEMO_OUT)
 
-test: $(VENV)/.installed-dev ## all tests but the slow ones
-	$(BIN)/python -m pytest -m "not slow"
+test: $(VENV)/.installed-dev ## all tests but the slow ones, on two cores
+	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
 
 test-slow: $(VENV)/.installed-dev ## samples of what is heavy
 	$(BIN)/python -m pytest -m slow
