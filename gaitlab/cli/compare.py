@@ -11,6 +11,7 @@ from ..clinical.comparison import MINIMAL, Comparison, compare, tables
 from ..errors import OutputError
 from ..pipelines.compare import read_members, read_minimal, write_tables
 from ..pipelines.output import make_folder
+from ..report.colours import Palette, recoloured
 from ..report.comparison_figures import figures
 
 MOST_ROWS = 8
@@ -25,6 +26,9 @@ def compare_results(
         Path | None, typer.Option(help="More minimal differences: CSV with quantity, value, source.")
     ] = None,
     parquet: Annotated[bool, typer.Option(help="Write every table as Parquet, too (needs pyarrow).")] = False,
+    colours: Annotated[
+        Palette, typer.Option(help="green: right side green; safe: for colour-blind eyes and grey paper.")
+    ] = "standard",
 ) -> None:
     """Compare results before and after, of several people, or of groups: tables and figures."""
     make_folder(out)
@@ -34,7 +38,7 @@ def compare_results(
     for name, markup in figures(comparison).items():
         path = out / f"{name}.svg"
         try:
-            path.write_text(markup, encoding="utf-8")
+            path.write_text(recoloured(markup, colours), encoding="utf-8")
         except OSError as error:
             raise OutputError(f"{path} cannot be written ({error.strerror})") from error
         written.append(path)

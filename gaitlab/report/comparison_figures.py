@@ -7,9 +7,9 @@ import numpy as np
 
 from ..clinical.comparison import Band, Comparison, Member, group_bands, quantities
 from ..clinical.document import SIDES
-from ..clinical.gait_profile import GPS_MINIMAL_DIFFERENCE
+from ..clinical.gait_profile import GPS_MINIMAL_DIFFERENCE, VARIABLES
 from .colours import CENTRE, SIDE
-from .cycle_panels import CyclePanel
+from .cycle_panels import CyclePanel, leaves_scale, value_range
 from .formatting import label
 from .kinematics_figure import NO_NORMS, PANELS, PERCENT, Norms, norm_band
 from .kinetics_figure import PANELS as FORCE_PANELS
@@ -52,7 +52,15 @@ SCALES: Mapping[str, tuple[float, float]] = {
     "double_support_percent": (0.0, 100.0),
 }
 """Fixed scales; a value outside is drawn at the edge with an arrow."""
-SCORE_SCALES: Mapping[str, tuple[float, float]] = {"gps": (0.0, 30.0), "gps_overall": (0.0, 30.0), "gdi": (0.0, 130.0)}
+SCORE_SCALES: Mapping[str, tuple[float, float]] = {
+    "gps": (0.0, 30.0),
+    "gps_overall": (0.0, 30.0),
+    "gdi": (0.0, 130.0),
+    **{f"gvs_{name}": (0.0, 30.0) for name in VARIABLES},
+}
+_SCORES = {"gps": "GPS [deg]", "gps_overall": "GPS overall [deg]", "gdi": "GDI"} | {
+    f"gvs_{name}": f"GVS {name.replace('_', ' ')} [deg]" for name in VARIABLES
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,6 +136,7 @@ def _curve_panel(panel: CyclePanel, bands: Mapping[str, Mapping[tuple[str, str],
     drawn = [norm_band(panel, norms)]
     for dash, group in zip(DASHES, bands.values(), strict=False):
         drawn += [_band(axes, side, band, dash) for side in SIDES if (band := group.get((panel.name, side)))]
+    means = [band.mean for group in bands.values() for side in SIDES if (band := group.get((panel.name, side)))]
     x, middle = axes.left - 42.0, axes.top + axes.height / 2.0
     turned = {"class": "direction", "text_anchor": "middle", "transform": f"rotate(-90 {number(x)} {number(middle)})"}
     return "".join(
@@ -137,6 +146,7 @@ def _curve_panel(panel: CyclePanel, bands: Mapping[str, Mapping[tuple[str, str],
             text(panel.direction, x, middle, **turned),
             text("% of cycle", axes.right, axes.bottom + 29.0, **{"class": "note", "text_anchor": "end"}),
             clipped(axes, "".join(drawn)),
+            leaves_scale(axes, value_range(means), panel.decimals),
         ]
     )
 
@@ -195,19 +205,19 @@ def _dot_panel(name: str, place: tuple[int, int], extent: tuple[float, tuple[flo
         x_range=(0.0, n),
         y_range=scale,
     )
-    words = {"gps": "GPS [deg]", "gps_overall": "GPS overall [deg]", "gdi": "GDI"}.get(name) or label(name)
+    words = _SCORES.get(name) or label(name)
     parts = [frame(axes, (), ticks(*scale, 5)), text(words, axes.left, axes.top - 8.0, **{"class": "title"})]
     if n <= MOST_LABELS:
         middle = {"class": "tick", "text_anchor": "middle"}
         parts += [text(str(k + 1), axes.x(k + 0.5), axes.bottom + 15.0, **middle) for k in range(int(n))]
     parts += [_dot(axes, dot) for dot in dots]
     if name.startswith("gps"):
-        high = axes.y(scale[1] - 1.0)
+        low = axes.top - 8.0
         span = axes.y(0.0) - axes.y(GPS_MINIMAL_DIFFERENCE)
         bar = {"stroke": "#222", "stroke_width": 3.0}
-        parts.append(straight((axes.right - 8.0, high), (axes.right - 8.0, high + span), **bar))
+        parts.append(straight((axes.right - 2.0, low - span), (axes.right - 2.0, low), **bar))
         least = {"class": "tick", "text_anchor": "end"}
-        parts.append(text(f"MCID {GPS_MINIMAL_DIFFERENCE:g} deg", axes.right - 13.0, high + 9.0, **least))
+        parts.append(text(f"MCID {GPS_MINIMAL_DIFFERENCE:g} deg", axes.right - 7.0, low, **least))
     return "".join(parts)
 
 

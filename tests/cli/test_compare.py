@@ -5,6 +5,8 @@ import pyarrow.parquet
 import pytest
 from synthetic_output import document, write_output
 
+from gaitlab.report.colours import PALETTES
+
 FIGURES = ("curves", "scores", "spatiotemporal", "weights")
 TABLES = ("quantities", "weights", "curves", "bands", "missing")
 
@@ -38,6 +40,13 @@ def test_figures_stand_alone(gaitlab, folders, tmp_path):
         root = ElementTree.parse(tmp_path / "out" / f"{name}.svg").getroot()
         assert root.tag == "{http://www.w3.org/2000/svg}svg"
         assert any(element.tag.endswith("style") for element in root.iter())
+
+
+def test_sides_may_have_colours_for_every_eye(gaitlab, folders, tmp_path):
+    assert gaitlab("compare", *folders, "--out", tmp_path / "out", "--colours", "safe")[0] == 0
+    drawn = (tmp_path / "out" / "curves.svg").read_text()
+    assert all(colour in drawn for colour in PALETTES["safe"].values())
+    assert not [colour for colour in PALETTES["safe"] if colour in drawn]
 
 
 def test_groups_get_bands(gaitlab, folders, tmp_path):

@@ -103,6 +103,16 @@ def test_a_result_with_nothing_but_curves_is_compared_in_them():
     assert missing == {"scores", "kinetics", "weights"}
 
 
+def test_scores_are_drawn_variable_by_variable():
+    drawn = figures(compare([member("before", degrees=0.0, gps=9.0), member("after", degrees=2.0, gps=8.0)]))["scores"]
+    assert "GVS hip flexion [deg]" in drawn and "GPS overall [deg]" in drawn
+
+
+def test_curves_that_leave_their_scale_are_told():
+    drawn = figures(compare([member("a", degrees=0.0), member("b", degrees=200.0)]))["curves"]
+    assert drawn.count("leaves scale:") == len(CURVES)
+
+
 def test_bands_of_a_group_are_point_by_point():
     band = group_bands([member(str(shift), degrees=shift) for shift in (-1.0, 0.0, 4.0)])["knee_flexion", "left"]
     assert band.n == 3
