@@ -1,13 +1,32 @@
 """Sections of trust: warnings, quality of the data, provenance."""
 
+import numpy as np
+
 from .blocks import Block, Section, bullets, facts, missing, paragraph, section, table
 from .formatting import fixed
 from .result import Result, mapping, real, sequence
 
+TURNING = 15.0
+"""Spread of pelvis rotation between strides [deg], rms over the cycle: 2 to 6 in straight walks of two children and an
+adult, 38 and more as soon as one child's turns are among them."""
+
+
+def turning_warning(result: Result) -> str:
+    """What averages of strides in different directions are worth; empty for straight walks."""
+    curves = [curve for curve in result.kinematics.get("pelvis_rotation", {}).values() if curve.sd is not None]
+    spread = max((float(np.sqrt(np.nanmean(np.square(c.sd)))) for c in curves if c.sd is not None), default=0.0)
+    if spread <= TURNING:
+        return ""
+    return (
+        f"the strides go in different directions (standard deviation of pelvis rotation {spread:.0f} deg): averages of "
+        "pelvis angles and foot progression, and GPS and GDI, mean little; leave the trials that turn out"
+    )
+
 
 def warnings_section(results: list[tuple[str, Result]]) -> Section:
-    """All warnings of the overall document and of its trials, once each, before anything else."""
-    seen = dict[str, str]()
+    """All warnings of the overall document, the first, and of its trials, once each, before anything else."""
+    turning = turning_warning(results[0][1])
+    seen = {turning: ""} if turning else dict[str, str]()
     for name, result in results:
         for warning in result.warnings:
             seen.setdefault(warning, name)

@@ -72,10 +72,10 @@ def joints_figure(walk: Walk) -> str | None:
             if optimal is not None and optimal.shape == measured.shape:
                 traces += [_trace(optimal, column, side, True) for side, column in columns]
             scale = _SAGITTAL.get(title, _PLANES[0]) if axis == 0 else _PLANES[axis]
-            axes = _axes(walk.time, (row, axis), scale, 115.0, 155.0)
+            axes = _axes(walk.time, (row, axis), scale, 115.0, 166.0)
             parts.append(_panel(walk, axes, traces, f"{title} {words} [deg]"))
     legend = _legend("measured", "model-optimal")
-    height = _TOP + 155.0 * len(rows) + 14.0
+    height = _TOP + 166.0 * len(rows) + 14.0
     return figure(_WIDTH, height, legend + "".join(parts), "Measured and model-optimal joint angles")
 
 
@@ -165,7 +165,7 @@ def _panel(walk: Walk, axes: Axes, traces: Sequence[Trace], title: str) -> str:
         + frame(axes, ticks(*axes.x_range, 5), ticks(*axes.y_range, 4))
         + clipped(axes, "".join(lines))
         + text(title, axes.left, axes.top - 7.0, **{"class": "title"})
-        + text("s", axes.right + 15.0, axes.bottom + 15.0, **{"class": "tick"})
+        + text("[s]", axes.right + 12.0, axes.bottom + 15.0, **{"class": "tick"})
         + leaves_scale(axes, value_range([trace.values for trace in traces]), 0)
     )
 

@@ -21,3 +21,12 @@ def test_each_trial_has_events_on_its_own_clock(tmp_path):
     text = shown(write_output(tmp_path, both))
     first, second = text.split("walk_1: times from the first stored frame")[1].split("walk_2: times from the first")
     assert first.count("0.050 left foot strike") == 1 and second.count("0.050 left foot strike") == 1
+
+
+def test_strides_in_different_directions_are_warned_of(tmp_path):
+    turned = document()
+    turned["kinematics"]["pelvis_rotation"]["left"]["sd"] = [40.0] * 101
+    said = Page(render(write_output(tmp_path / "turned", turned), "front")).text
+    assert "standard deviation of pelvis rotation 40 deg" in said
+    straight = Page(render(write_output(tmp_path / "straight", document()), "front")).text
+    assert "different directions" not in straight
