@@ -75,19 +75,23 @@ def test_quantities_are_listed(gaitlab):
     assert "steps/min" in out
 
 
+@pytest.fixture(scope="module")
+def faster(analysed, tmp_path_factory):
+    """Result of a walk 20 % faster."""
+    out = tmp_path_factory.mktemp("faster")
+    assert run(["predict", str(analysed), "--set", "speed=+20%", "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def entry(faster):
+    """The prediction in its document."""
+    return json.loads((faster / "result.json").read_text())["prediction"]
+
+
 @pytest.mark.slow
 class TestFaster:
     """Speed +20 %."""
-
-    @pytest.fixture(scope="class")
-    def faster(self, analysed, tmp_path_factory):
-        out = tmp_path_factory.mktemp("faster")
-        assert run(["predict", str(analysed), "--set", "speed=+20%", "--out", str(out)]) == 0
-        return out
-
-    @pytest.fixture(scope="class")
-    def entry(self, faster):
-        return json.loads((faster / "result.json").read_text())["prediction"]
 
     def test_every_step_is_certified(self, entry):
         assert entry["status"] == "solved"
