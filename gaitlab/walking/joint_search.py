@@ -132,18 +132,18 @@ class JointSearch:
         )
         sigma = max(frames.noise, self.least_sigma)
         run = _Run(self, frames, sigma, _State(level, theta, optimum), damping, progress)
+        settled = False
         for k in range(self.rounds):
+            before = run.state.theta
             # Normalisers of the first round are those of the start: it need not end exactly.
             run.search(self.tol_loss if k else FIRST * self.tol_loss)
             iterations, lower_iterations = iterations + run.iterations, lower_iterations + run.lower_iterations
-            found = run.estimate(iterations, lower_iterations)
-            moved, sds = np.abs(run.state.theta - theta), np.sqrt(np.diag(found.covariance))
-            settled = run.converged and bool(np.all(moved <= self.tol_round + SMALL * sds))
+            settled = run.converged and run.has_stayed_at(before)
             if settled or not run.converged:
                 break
             run = run.renewed()
-            theta = run.state.theta
         reason = "converged: weights, states and normalisers stay" if settled else "weights and states do not settle"
+        found = replace(run.estimate(), iterations=iterations, lower_iterations=lower_iterations)
         return run.state.level, replace(found, converged=settled, reason=reason)
 
 
@@ -345,7 +345,12 @@ class _Run:
         ]
         return np.mean(both, axis=0) - middle
 
-    def estimate(self, iterations: int, lower_iterations: int) -> WeightEstimate:
+    def has_stayed_at(self, theta: np.ndarray) -> bool:
+        """Whether the weights have moved by little from theta, shape (n_theta,)."""
+        allowed = self.method.tol_round + SMALL * np.sqrt(np.diag(self.estimate().covariance))
+        return bool(np.all(np.abs(self.state.theta - theta) <= allowed))
+
+    def estimate(self) -> WeightEstimate:
         """What was found so far, with the marginal covariance of the weights."""
         lin, white = self._linearised(), self._white(self.state)
         basis = qr(lin.by_states, mode="economic")[0]
@@ -361,6 +366,6 @@ class _Run:
             condition=uncertainty.condition,
             converged=False,
             reason="under way",
-            iterations=iterations,
-            lower_iterations=lower_iterations,
+            iterations=self.iterations,
+            lower_iterations=self.lower_iterations,
         )

@@ -91,3 +91,14 @@ def test_residuals_follow_weights_and_given_states_as_their_derivatives_say(run)
     measured = (run.misfit(both[0]) - run.misfit(both[1])).ravel() / 2.0
     expected = (lin.by_theta @ change + lin.by_states @ step.ravel())[: measured.size]
     assert np.linalg.norm(measured - expected) < 5e-3 * np.linalg.norm(expected)
+
+
+def test_normalisers_leave_out_noise_but_half_stays(run):
+    level, optimum = run.state.level, run.state.optimum
+    values = level.normaliser_values(optimum.problem, optimum.solution.w)
+    noise = np.zeros_like(values)
+    noise[0], noise[-1] = 0.1 * values[0], 2.0 * values[-1]
+    renewed, theta = level.normalised_at(optimum, run.state.theta, noise)
+    np.testing.assert_allclose(renewed.all_normalisers, [0.9 * values[0], *values[1:-1]])
+    assert renewed.acceleration_normaliser == pytest.approx(0.5 * values[-1])
+    assert theta.sum() == pytest.approx(1.0)
