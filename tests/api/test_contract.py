@@ -23,7 +23,7 @@ CHECKS = [not_a_server_error, content_type_conformance, response_schema_conforma
 ENDLESS = {"watchAnalysis", "openViewer"}
 """A stream that does not end, and processes; tests of their own."""
 OPERATIONS = [f"{method} {path}" for method, path, o in operations_of(DOCUMENT) if o["operationId"] not in ENDLESS]
-FEW, MANY = 3, 60
+FEW, MANY = 3, 20
 QUIET = {"deadline": None, "database": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}
 
 
