@@ -24,7 +24,7 @@ from scipy.linalg import cho_factor, cho_solve, null_space, qr, solve_triangular
 
 from ..bilevel.result import WeightEstimate
 from ..bilevel.simplex_step import simplex_minimiser
-from ..bilevel.uncertainty import weight_uncertainty
+from ..bilevel.uncertainty import Uncertainty, weight_uncertainty
 from ..nlp.sparse_solution import SparseSolution, Status
 from .given_states import StateConditions, sampling_table, spread_moves
 from .identification import WalkLevel, WalkOptimum
@@ -124,7 +124,6 @@ class JointSearch:
         `progress(iteration, rms)` may raise `errors.Cancelled`.
         """
         theta, optimum = start
-        iterations, lower_iterations = 0, 0
         damping = NodeDamping(
             scale=np.repeat([self.posture, self.velocity], level.given.shape[1] // 2),
             factors=np.ones(len(level.given)),
@@ -137,14 +136,11 @@ class JointSearch:
             before = run.state.theta
             # Normalisers of the first round are those of the start: it need not end exactly.
             run.search(self.tol_loss if k else FIRST * self.tol_loss)
-            iterations, lower_iterations = iterations + run.iterations, lower_iterations + run.lower_iterations
             settled = run.converged and run.has_stayed_at(before)
             if settled or not run.converged:
                 break
             run = run.renewed()
-        reason = "converged: weights, states and normalisers stay" if settled else "weights and states do not settle"
-        found = replace(run.estimate(), iterations=iterations, lower_iterations=lower_iterations)
-        return run.state.level, replace(found, converged=settled, reason=reason)
+        return run.state.level, run.estimate(settled)
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,8 +177,11 @@ class _Run:
     damping: NodeDamping
     progress: Progress | None
     loss: float = field(init=False)
+    known: tuple[_State, _Linearised] | None = field(default=None, init=False)
+    """The newest linearisation, and where."""
     converged: bool = False
     iterations: int = 0
+    """Of all rounds so far."""
     lower_iterations: int = 0
 
     def __post_init__(self) -> None:
@@ -203,11 +202,11 @@ class _Run:
             self.iterations += 1
             if self.progress is not None:
                 self.progress(self.iterations, float(np.sqrt(np.mean(self.misfit(self.state) ** 2))))
-            if self._is_at_rest(self._linearised(), tol_loss):
+            if not self._takes_step(self._linearised(), tol_loss):
                 return
 
-    def _is_at_rest(self, lin: _Linearised, tol_loss: float) -> bool:
-        """Take a step that lowers the loss; true if there is none."""
+    def _takes_step(self, lin: _Linearised, tol_loss: float) -> bool:
+        """Take a step that lowers the loss; false if there is none."""
         surprised, size = np.zeros(len(self.state.level.given) - 1, dtype=bool), np.inf
         for attempt in range(self.method.attempts):
             theta, given_step = self._subproblem(lin)
@@ -216,7 +215,7 @@ class _Run:
             promised = self.loss - 0.5 * float(expected @ expected)
             if attempt == 0 and promised <= tol_loss:
                 self.converged = True
-                return True
+                return False
             trial = self._moved(lin, theta, given_step)
             # An arc that was not solved ends far from where it was expected.
             now = self._worse_than(expected, trial) > 0.25 * max(promised, tol_loss)
@@ -224,11 +223,11 @@ class _Run:
             if trial.optimum.solution.status is Status.SOLVED and new < self.loss:
                 self.damping.ease(surprised | now)
                 self.state, self.loss = trial, new
-                return False
+                return True
             self.damping.hold(now, attempt)
             surprised |= now
         self.converged = size <= self.method.tol_step
-        return True
+        return False
 
     def _worse_than(self, expected: np.ndarray, trial: _State) -> np.ndarray:
         """How much worse each arc fits than expected from residuals (n_m + n_c,), shape (n_given - 1,)."""
@@ -254,6 +253,11 @@ class _Run:
         return 0.5 * float(np.sum(r**2) + c @ c)
 
     def _linearised(self) -> _Linearised:
+        if self.known is None or self.known[0] is not self.state:
+            self.known = self.state, self._linearise()
+        return self.known[1]
+
+    def _linearise(self) -> _Linearised:
         state, n_q = self.state, self.frames.q.shape[1]
         level, optimum = state.level, state.optimum
         n_theta, n_nodes = level.n_theta, len(level.tracked.stride.times)
@@ -319,6 +323,8 @@ class _Run:
             _State(level, theta, optimum),
             self.damping,
             self.progress,
+            iterations=self.iterations,
+            lower_iterations=self.lower_iterations,
         )
 
     def _inflation(self) -> np.ndarray:
@@ -347,25 +353,30 @@ class _Run:
 
     def has_stayed_at(self, theta: np.ndarray) -> bool:
         """Whether the weights have moved by little from theta, shape (n_theta,)."""
-        allowed = self.method.tol_round + SMALL * np.sqrt(np.diag(self.estimate().covariance))
+        allowed = self.method.tol_round + SMALL * np.sqrt(np.diag(self._uncertainty().covariance))
         return bool(np.all(np.abs(self.state.theta - theta) <= allowed))
 
-    def estimate(self) -> WeightEstimate:
-        """What was found so far, with the marginal covariance of the weights."""
+    def _uncertainty(self) -> Uncertainty:
+        """Marginal covariance of the weights, the states being unknown, too."""
         lin, white = self._linearised(), self._white(self.state)
         basis = qr(lin.by_states, mode="economic")[0]
         marginal = lin.by_theta - basis @ (basis.T @ lin.by_theta)
         # The states between arcs take degrees of freedom.
         freedom = max(1.0 - self.state.level.given.size / white.size, 0.1)
-        uncertainty = weight_uncertainty(marginal, white / np.sqrt(freedom))
+        return weight_uncertainty(marginal, white / np.sqrt(freedom))
+
+    def estimate(self, settled: bool) -> WeightEstimate:
+        """The result, and whether it has settled."""
+        uncertainty = self._uncertainty()
+        reason = "converged: weights, states and normalisers stay" if settled else "weights and states do not settle"
         return WeightEstimate(
             theta=self.state.theta,
             response=self.state.optimum,
             covariance=uncertainty.covariance,
             identifiable=uncertainty.identifiable,
             condition=uncertainty.condition,
-            converged=False,
-            reason="under way",
+            converged=settled,
+            reason=reason,
             iterations=self.iterations,
             lower_iterations=self.lower_iterations,
         )
