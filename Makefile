@@ -21,8 +21,8 @@ demo: $(VENV)/.installed ## install, analyse the demo recordings, print the weig
 test: $(VENV)/.installed-dev ## all tests but the slow ones, on two cores
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
 
-test-slow: $(VENV)/.installed-dev ## samples of what is heavy
-	$(BIN)/python -m pytest -m slow
+test-slow: $(VENV)/.installed-dev ## samples of what is heavy, on two cores
+	$(BIN)/python -m pytest -m slow -n 2 --dist loadfile --durations=25
 
 test-postgres: $(VENV)/.installed-dev ## tests of storage, jobs and API on the server at GAITLAB_TEST_DATABASE_URL
 	$(BIN)/python -m pytest -m "not slow" tests/storage tests/jobs tests/api
