@@ -1,8 +1,13 @@
 """The first stride of an analysed trial or of a bundled demo walk, ready to be tracked."""
 
+import json
+from dataclasses import replace
 from functools import lru_cache, partial
 
-from gaitlab.pipelines.analyse import Sources, analyse_files
+import numpy as np
+
+from gaitlab.mocap.c3d import read_c3d
+from gaitlab.pipelines.analyse import Sources, analyse, analyse_files
 from gaitlab.pipelines.bundled import demo_folder
 from gaitlab.pipelines.model import single_frames
 from gaitlab.pipelines.options import AnalysisOptions
@@ -42,3 +47,17 @@ def demo_request(child):
 
 def demo_stride(child="demo_cp_child", landing="soft"):
     return first_stride(_trial(child), landing)
+
+
+def noisy_demo_request(child, seed, noise):
+    """The same with normal noise [m] on every marker coordinate of the walk."""
+    folder, random = demo_folder(child), np.random.default_rng(seed)
+    walk = read_c3d(folder / "walk1.c3d")
+    markers = {name: y + noise * random.standard_normal(y.shape) for name, y in walk.markers.items()}
+    noisy = replace(walk, markers=markers)
+    return request_of(analyse(read_c3d(folder / "static.c3d"), [noisy], AnalysisOptions(weights=False)).trials[0])
+
+
+def true_weights(child):
+    """Weights for which the demo walk is optimal, shape (n_theta,)."""
+    return np.array(json.loads((demo_folder(child) / "truth.json").read_text())["walks"]["walk1"]["weights"])

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import null_space
+from scipy.stats import chi2
 
 LARGEST_SD = 0.15
 """A weight with a larger standard deviation is called not identifiable: two of them span most of [0, 1]."""
@@ -52,6 +53,20 @@ def weight_uncertainty(jacobian: np.ndarray, residual: np.ndarray) -> Uncertaint
     identifiable = np.sqrt(np.diag(covariance)) < LARGEST_SD
     condition = float(strengths[0] / strengths[-1]) ** 2 if strengths[-1] > 0.0 else float("inf")
     return Uncertainty(covariance=covariance, identifiable=identifiable, condition=condition)
+
+
+def ellipsoid_holds(gap: np.ndarray, covariance: np.ndarray, confidence: float = 0.95) -> bool:
+    """Whether the confidence ellipsoid around an estimate holds a point a gap away, shape (n_theta,).
+
+    The squared distance in the metric of the covariance, shape (n_theta, n_theta), against the quantile of
+    chi-squared. Weights of infinite variance say nothing, and the sum of the weights has no variance: such directions
+    do not count.
+    """
+    known = np.isfinite(np.diag(covariance))
+    values, vectors = np.linalg.eigh(covariance[np.ix_(known, known)])
+    told = values > 1e-12 * values[-1]
+    distance = float(np.sum((vectors[:, told].T @ gap[known]) ** 2 / values[told]))
+    return distance <= float(chi2.ppf(confidence, int(told.sum())))
 
 
 def inflation(residual: np.ndarray) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..bilevel.implicit_gauss_newton import ImplicitGaussNewton
 from ..bilevel.result import WeightEstimate
+from ..bilevel.uncertainty import ellipsoid_holds
 from ..errors import NotConverged
 from ..nlp.sparse_solution import Status
 from ..walking.criteria import THESIS
@@ -82,17 +83,7 @@ class GaitRun:
 
     def covers_truth(self) -> bool:
         """Whether the 95 % confidence ellipsoid of the weights holds the truth."""
-        gap = self.estimate.theta - self.case.weights
-        values, vectors = np.linalg.eigh(self.estimate.covariance)
-        # The sum of the weights is fixed: one direction has no variance.
-        told = values > 1e-12 * values[-1]
-        distance = float(np.sum((vectors[:, told].T @ gap) ** 2 / values[told]))
-        return distance <= _chi_square(int(told.sum()))
-
-
-def _chi_square(degrees: int) -> float:
-    """95 % quantile."""
-    return {1: 3.841459, 2: 5.991465, 3: 7.814728}[degrees]
+        return ellipsoid_holds(self.estimate.theta - self.case.weights, self.estimate.covariance)
 
 
 def solve_case(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gaitlab.bilevel.uncertainty import correlation, inflation, weight_uncertainty
+from gaitlab.bilevel.uncertainty import correlation, ellipsoid_holds, inflation, weight_uncertainty
 
 TIMES, CHANNELS = 100, 20
 
@@ -48,6 +48,24 @@ def test_covariance_holds_for_noise_correlated_in_time():
     fits = restricted_fits(jacobian, np.array([draw.ravel() for draw in draws]))
     predicted = weight_uncertainty(jacobian, draws[0]).covariance
     np.testing.assert_allclose(fits.var(axis=0), np.diag(predicted), rtol=0.25)
+
+
+def test_ellipsoids_hold_the_truth_as_often_as_they_say():
+    """Bounds are four standard errors of 400 experiments."""
+    rng = np.random.default_rng(4)
+    jacobian = rng.standard_normal((TIMES * CHANNELS, 3)) * [1.0, 2.0, 0.5]
+    noise = rng.standard_normal((400, TIMES * CHANNELS))
+    fits = restricted_fits(jacobian, noise)
+    covariance = weight_uncertainty(jacobian, noise[0].reshape(TIMES, CHANNELS)).covariance
+    held = {level: np.mean([ellipsoid_holds(gap, covariance, level) for gap in fits]) for level in (0.5, 0.95)}
+    assert held[0.95] == pytest.approx(0.95, abs=0.045)
+    assert held[0.5] == pytest.approx(0.5, abs=0.1)
+
+
+def test_blind_weights_do_not_count_in_the_ellipsoid():
+    covariance = np.diag([np.inf, 0.01, 0.01])
+    assert ellipsoid_holds(np.array([9.0, 0.1, -0.1]), covariance)
+    assert not ellipsoid_holds(np.array([0.0, 0.3, -0.3]), covariance)
 
 
 def test_moves_keep_the_sum_of_the_weights():
