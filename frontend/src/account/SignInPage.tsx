@@ -1,11 +1,12 @@
-import { useState, type FormEvent } from "react";
-import { Alert, Button, Center, Paper, PasswordInput, Stack, Text, TextInput, Title } from "@mantine/core";
+import { useState } from "react";
+import { Alert, Button, PasswordInput, Text, TextInput, Title } from "@mantine/core";
 import { useMutation, useQuery } from "@tanstack/react-query";
 import { client, Problem, unwrap } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { Preferences } from "../app/Preferences";
 import { useI18n } from "../i18n/I18n";
 import { useAccount } from "./Account";
+import { CardForm, LoginField } from "./CardForm";
 
 export function SignInPage() {
   const { t } = useI18n();
@@ -20,56 +21,40 @@ export function SignInPage() {
     onSuccess: enter,
   });
   const needsCode = signIn.error instanceof Problem && signIn.error.kind.includes("second-factor");
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    signIn.mutate();
-  };
   return (
-    <Center component="main" mih="100vh" p="md">
-      <Paper withBorder shadow="sm" p="xl" w={400}>
-        <form onSubmit={submit}>
-          <Stack>
-            <div>
-              <Title order={1}>gaitlab</Title>
-              <Text c="dimmed">{t("slogan")}</Text>
-            </div>
-            {methods.data?.first_account_needed && <Alert color="yellow">{t("firstAccountNeeded")}</Alert>}
-            <TextInput
-              label={t("login")}
-              autoComplete="username"
-              required
-              value={login}
-              onChange={(event) => setLogin(event.currentTarget.value)}
-            />
-            <PasswordInput
-              label={t("password")}
-              autoComplete="current-password"
-              required
-              value={password}
-              onChange={(event) => setPassword(event.currentTarget.value)}
-            />
-            {(needsCode || code) && (
-              <TextInput
-                label={t("code")}
-                autoComplete="one-time-code"
-                inputMode="numeric"
-                value={code}
-                onChange={(event) => setCode(event.currentTarget.value)}
-              />
-            )}
-            <ErrorNote error={signIn.error} />
-            <Button type="submit" loading={signIn.isPending}>
-              {t("signIn")}
-            </Button>
-            {methods.data?.single_sign_on && (
-              <Button component="a" href="/api/v1/auth/oidc/start" variant="default">
-                {methods.data.single_sign_on}
-              </Button>
-            )}
-            <Preferences />
-          </Stack>
-        </form>
-      </Paper>
-    </Center>
+    <CardForm onSubmit={signIn.mutate}>
+      <div>
+        <Title order={1}>gaitlab</Title>
+        <Text c="dimmed">{t("slogan")}</Text>
+      </div>
+      {methods.data?.first_account_needed && <Alert color="yellow">{t("firstAccountNeeded")}</Alert>}
+      <LoginField value={login} onChange={setLogin} />
+      <PasswordInput
+        label={t("password")}
+        autoComplete="current-password"
+        required
+        value={password}
+        onChange={(event) => setPassword(event.currentTarget.value)}
+      />
+      {(needsCode || code) && (
+        <TextInput
+          label={t("code")}
+          autoComplete="one-time-code"
+          inputMode="numeric"
+          value={code}
+          onChange={(event) => setCode(event.currentTarget.value)}
+        />
+      )}
+      <ErrorNote error={signIn.error} />
+      <Button type="submit" loading={signIn.isPending}>
+        {t("signIn")}
+      </Button>
+      {methods.data?.single_sign_on && (
+        <Button component="a" href="/api/v1/auth/oidc/start" variant="default">
+          {methods.data.single_sign_on}
+        </Button>
+      )}
+      <Preferences />
+    </CardForm>
   );
 }

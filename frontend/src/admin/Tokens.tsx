@@ -1,9 +1,10 @@
-import { useState, type FormEvent } from "react";
+import { useState } from "react";
 import { Alert, Button, Code, Group, Table, TextInput } from "@mantine/core";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useAccount } from "../account/Account";
 import { client, unwrap } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
+import { submitting } from "../app/submitting";
 import { useI18n } from "../i18n/I18n";
 
 const KEY = ["tokens"];
@@ -32,13 +33,9 @@ export function Tokens() {
     mutationFn: (id: string) => unwrap(client.DELETE("/api/v1/tokens/{token_id}", { params: { path: { token_id: id } } })),
     onSuccess: refresh,
   });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    create.mutate();
-  };
   return (
     <>
-      <form onSubmit={submit}>
+      <form onSubmit={submitting(create.mutate)}>
         <Group align="end">
           <TextInput
             label={t("tokenName")}

@@ -1,8 +1,9 @@
-import { useState, type FormEvent } from "react";
+import { useState } from "react";
 import { Alert, Button, Code, Group, NativeSelect, Switch, Table, TextInput } from "@mantine/core";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { client, ifMatch, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
+import { submitting } from "../app/submitting";
 import { useI18n, type Key } from "../i18n/I18n";
 
 type User = Schemas["User"];
@@ -105,12 +106,8 @@ function Invite({ onInvited }: { onInvited: (url: string) => void }) {
       return queries.invalidateQueries({ queryKey: KEY });
     },
   });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    invite.mutate();
-  };
   return (
-    <form onSubmit={submit}>
+    <form onSubmit={submitting(invite.mutate)}>
       <Group align="end">
         <TextInput label={t("login")} required value={login} onChange={(event) => setLogin(event.currentTarget.value)} />
         <NativeSelect

@@ -1,9 +1,9 @@
-import { useState, type FormEvent } from "react";
-import { Button, Group, Modal, NativeSelect, NumberInput, Stack, TextInput } from "@mantine/core";
+import { useState } from "react";
+import { NativeSelect, NumberInput, TextInput } from "@mantine/core";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { useLocation } from "wouter";
 import { client, unwrap, type Schemas } from "../api/client";
-import { ErrorNote } from "../app/ErrorNote";
+import { FormDialog } from "../app/FormDialog";
 import { useI18n } from "../i18n/I18n";
 
 type Stage = Schemas["TreatmentStage"];
@@ -36,51 +36,37 @@ export function NewVisitForm({ patientId, opened, onClose }: Props) {
       navigate(`/visits/${visit.id}`);
     },
   });
-  const submit = (event: FormEvent) => {
-    event.preventDefault();
-    create.mutate();
-  };
   return (
-    <Modal opened={opened} onClose={onClose} title={t("newVisit")} closeButtonProps={{ "aria-label": t("close") }}>
-      <form onSubmit={submit}>
-        <Stack>
-          <TextInput
-            type="date"
-            label={t("visitedOn")}
-            required
-            value={day}
-            onChange={(event) => setDay(event.currentTarget.value)}
-          />
-          <TextInput
-            label={t("condition")}
-            placeholder={t("conditionHint")}
-            value={condition}
-            onChange={(event) => setCondition(event.currentTarget.value)}
-          />
-          <NativeSelect
-            label={t("stage")}
-            value={stage}
-            onChange={(event) => setStage(event.currentTarget.value as Stage)}
-            data={[
-              { value: "none", label: "–" },
-              { value: "before", label: t("before") },
-              { value: "after", label: t("after") },
-            ]}
-          />
-          <TextInput
-            label={t("treatment")}
-            value={treatment}
-            onChange={(event) => setTreatment(event.currentTarget.value)}
-          />
-          <NumberInput label={t("age")} min={0} max={130} value={age} onChange={setAge} />
-          <ErrorNote error={create.error} />
-          <Group justify="end">
-            <Button type="submit" loading={create.isPending}>
-              {t("save")}
-            </Button>
-          </Group>
-        </Stack>
-      </form>
-    </Modal>
+    <FormDialog title={t("newVisit")} opened={opened} onClose={onClose} save={create}>
+      <TextInput
+        type="date"
+        label={t("visitedOn")}
+        required
+        value={day}
+        onChange={(event) => setDay(event.currentTarget.value)}
+      />
+      <TextInput
+        label={t("condition")}
+        placeholder={t("conditionHint")}
+        value={condition}
+        onChange={(event) => setCondition(event.currentTarget.value)}
+      />
+      <NativeSelect
+        label={t("stage")}
+        value={stage}
+        onChange={(event) => setStage(event.currentTarget.value as Stage)}
+        data={[
+          { value: "none", label: "–" },
+          { value: "before", label: t("before") },
+          { value: "after", label: t("after") },
+        ]}
+      />
+      <TextInput
+        label={t("treatment")}
+        value={treatment}
+        onChange={(event) => setTreatment(event.currentTarget.value)}
+      />
+      <NumberInput label={t("age")} min={0} max={130} value={age} onChange={setAge} />
+    </FormDialog>
   );
 }
