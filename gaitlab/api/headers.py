@@ -25,9 +25,10 @@ PAGES = "; ".join(
 )
 VIEWER = "; ".join(
     (
-        # viser's client is one page with its script, styles, worker and WebAssembly inside.
+        # viser's client is one page with its script, styles, worker and WebAssembly inside; three.js makes functions
+        # of strings, without which skeletons are not drawn.
         "default-src 'none'",
-        "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob:",
+        "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:",
         "style-src 'self' 'unsafe-inline'",
         "img-src 'self' data: blob:",
         "font-src 'self' data:",
