@@ -1,6 +1,11 @@
 """A clinic with the built pages, and a headless Chromium that looks at them."""
 
+import os
 import shutil
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
 
 import pytest
 from web_world import PASSWORD, running_world
@@ -33,16 +38,40 @@ def clinic(tmp_path_factory):
         yield running
 
 
-@pytest.fixture
-def stranger(chromium, clinic):
+@pytest.fixture(scope="session")
+def busy_clinic(tmp_path_factory):
+    """A clinic with a worker: what is asked for is computed."""
+    folder = tmp_path_factory.mktemp("busy")
+    with running_world(folder, frontend=FRONTEND) as running, working(running.services.settings):
+        yield running
+
+
+@contextmanager
+def working(settings):
+    """A worker as an administrator starts it, until the end."""
+    url = settings.database_url.get_secret_value()
+    gaitlab = Path(sys.executable).parent / "gaitlab"
+    # Not on the command line, where everybody on the machine could read it.
+    environment = {**os.environ, "GAITLAB_DATABASE_URL": url}
+    command = [gaitlab, "worker", "--data-dir", settings.data_dir, "--concurrency", "1"]
+    with subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL) as process:
+        try:
+            yield
+        finally:
+            process.terminate()
+
+
+@contextmanager
+def opened_page(chromium, world, width=1280, theme="light"):
     """A page on which nobody is signed in; it fails the test when it asks anybody else for anything."""
+    size = {"width": width, "height": 900}
     context = chromium.new_context(
-        base_url=str(clinic.client.base_url), viewport={"width": 1280, "height": 900}, locale="en-GB"
+        base_url=str(world.client.base_url), viewport=size, locale="en-GB", color_scheme=theme, reduced_motion="reduce"
     )
     context.set_default_timeout(WAIT_MS)
     page = context.new_page()
     foreign, errors = [], []
-    page.on("request", lambda request: foreign.append(request.url) if not is_ours(request.url, clinic) else None)
+    page.on("request", lambda request: foreign.append(request.url) if not is_ours(request.url, world) else None)
     page.on("pageerror", lambda error: errors.append(str(error)))
     yield page
     context.close()
@@ -50,8 +79,15 @@ def stranger(chromium, clinic):
     assert not errors
 
 
-def is_ours(url, clinic):
-    return url.startswith((str(clinic.client.base_url), "data:", "blob:"))
+def is_ours(url, world):
+    return url.startswith((str(world.client.base_url), "data:", "blob:"))
+
+
+@pytest.fixture
+def stranger(chromium, clinic):
+    """A page on which nobody is signed in."""
+    with opened_page(chromium, clinic) as page:
+        yield page
 
 
 @pytest.fixture

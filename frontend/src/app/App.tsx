@@ -1,4 +1,4 @@
-import { createTheme, MantineProvider } from "@mantine/core";
+import { Badge, createTheme, MantineProvider } from "@mantine/core";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import { Problem } from "../api/client";
 import { SessionProvider } from "../account/Account";
@@ -10,6 +10,8 @@ const theme = createTheme({
   primaryShade: { light: 9, dark: 8 },
   fontFamily: "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif",
   defaultRadius: "md",
+  // Capitals are hard to read in German, whose nouns have their own.
+  components: { Badge: Badge.extend({ styles: { label: { textTransform: "none" } } }) },
 });
 
 const queries = new QueryClient({

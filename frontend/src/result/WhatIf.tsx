@@ -1,24 +1,27 @@
 /** The optimal walk of a changed body or task, as a job. */
 import { useState } from "react";
-import { Button, Paper, SimpleGrid, Slider, Text, Title } from "@mantine/core";
-import { useMutation } from "@tanstack/react-query";
+import { Anchor, Button, Group, NativeSelect, Paper, SimpleGrid, Slider, Text, Title } from "@mantine/core";
+import { useMutation, useQuery } from "@tanstack/react-query";
+import { Link } from "wouter";
 import { client, unwrap } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { JobCard } from "../jobs/JobCard";
 import { changesOf } from "./changes";
 
-/** Quantities of `gaitlab predict --set`, each changed by some per cent. */
-const QUANTITIES = [
-  { name: "speed", low: -20, high: 20 },
-  { name: "mass", low: -20, high: 20 },
-  { name: "left_ankle_plantarflexor_limit", low: -50, high: 0 },
-  { name: "right_ankle_plantarflexor_limit", low: -50, high: 0 },
-] as const;
+/** Quantities that are always offered, each changed by some per cent; others can be added. */
+const OFFERED = ["speed", "mass", "left_ankle_plantarflexor_limit", "right_ankle_plantarflexor_limit"];
+const LARGEST = 50;
+
+/** How far a slider goes: strength is only taken away, as nobody knows how much more there would be. */
+function rangeOf(quantity: string): readonly [number, number] {
+  return quantity.endsWith("_limit") ? [-LARGEST, 0] : [-20, 20];
+}
 
 export function WhatIf({ resultId }: { resultId: string }) {
-  const { t, name } = useI18n();
+  const { t } = useI18n();
   const [values, setValues] = useState<Readonly<Record<string, number>>>({});
+  const [added, setAdded] = useState<readonly string[]>([]);
   const predict = useMutation({
     mutationFn: () =>
       unwrap(
@@ -27,33 +30,96 @@ export function WhatIf({ resultId }: { resultId: string }) {
         }),
       ),
   });
+  const shown = [...OFFERED, ...added];
   return (
     <Paper withBorder p="md" className="no-print">
       <Title order={2}>{t("whatIf")}</Title>
       <Text c="dimmed">{t("whatIfHint")}</Text>
       <SimpleGrid cols={{ base: 1, md: 2 }} my="md" spacing="xl">
-        {QUANTITIES.map((each) => (
-          <div key={each.name}>
-            <Text size="sm">
-              {name(each.name)}: {values[each.name] ?? 0} %
-            </Text>
-            <Slider
-              min={each.low}
-              max={each.high}
-              step={5}
-              value={values[each.name] ?? 0}
-              thumbLabel={name(each.name)}
-              label={(value) => `${value} %`}
-              onChange={(value) => setValues({ ...values, [each.name]: value })}
-            />
-          </div>
+        {shown.map((each) => (
+          <Change
+            key={each}
+            quantity={each}
+            value={values[each] ?? 0}
+            onChange={(value) => setValues({ ...values, [each]: value })}
+          />
         ))}
       </SimpleGrid>
-      <Button disabled={changesOf(values).length === 0} loading={predict.isPending} onClick={() => predict.mutate()}>
-        {t("predict")}
-      </Button>
+      <Group align="end">
+        <MoreQuantities shown={shown} onAdd={(quantity) => setAdded([...added, quantity])} />
+        <Button disabled={changesOf(values).length === 0} loading={predict.isPending} onClick={() => predict.mutate()}>
+          {t("predict")}
+        </Button>
+      </Group>
       <ErrorNote error={predict.error} />
-      {predict.data && <JobCard job={predict.data} />}
+      {predict.data && (
+        <>
+          <JobCard job={predict.data} />
+          <Predicted jobId={predict.data.id} resultId={resultId} />
+        </>
+      )}
     </Paper>
+  );
+}
+
+interface ChangeProps {
+  quantity: string;
+  value: number;
+  onChange: (value: number) => void;
+}
+
+function Change({ quantity, value, onChange }: ChangeProps) {
+  const { name } = useI18n();
+  const [low, high] = rangeOf(quantity);
+  return (
+    <div>
+      <Text size="sm">
+        {name(quantity)}: {value} %
+      </Text>
+      <Slider
+        min={low}
+        max={high}
+        step={5}
+        marks={[{ value: 0 }]}
+        styles={{ bar: { display: "none" } }}
+        value={value}
+        thumbLabel={name(quantity)}
+        label={(shown) => `${shown} %`}
+        onChange={onChange}
+      />
+    </div>
+  );
+}
+
+/** What else may be changed by some per cent. */
+function MoreQuantities({ shown, onAdd }: { shown: readonly string[]; onAdd: (quantity: string) => void }) {
+  const { t, name } = useI18n();
+  const about = useQuery({ queryKey: ["about"], queryFn: () => unwrap(client.GET("/api/v1/about")) });
+  const more = Object.entries(about.data?.prediction_quantities ?? {}).filter(
+    ([quantity, { relative_to }]) => relative_to && !shown.includes(quantity),
+  );
+  return (
+    <NativeSelect
+      label={t("addQuantity")}
+      value=""
+      onChange={(event) => event.currentTarget.value && onAdd(event.currentTarget.value)}
+      data={[{ value: "", label: "–" }, ...more.map(([quantity]) => ({ value: quantity, label: name(quantity) }))]}
+    />
+  );
+}
+
+/** The way from a finished prediction to its curves over the measured ones. */
+function Predicted({ jobId, resultId }: { jobId: string; resultId: string }) {
+  const { t } = useI18n();
+  const job = useQuery({
+    // Under "jobs", so that it is asked anew when the job says that it has ended.
+    queryKey: ["jobs", jobId],
+    queryFn: () => unwrap(client.GET("/api/v1/analyses/{analysis_id}", { params: { path: { analysis_id: jobId } } })),
+  });
+  if (!job.data?.result_id) return null;
+  return (
+    <Anchor component={Link} href={`/compare?results=${resultId},${job.data.result_id}`}>
+      {t("overlayPredicted")}
+    </Anchor>
   );
 }

@@ -1,28 +1,15 @@
 /** Single cycles, cut out of the curves over time that stand beside the result. */
 import { useQuery } from "@tanstack/react-query";
-import { client, Problem, unwrap } from "../api/client";
 import { stridesIn } from "./cycle";
 import type { ResultDocument, Side } from "./document";
+import { readFile, trialFile } from "./files";
 import { parseTable, resample, type Table } from "./table";
 
 export type Cycles = Readonly<Record<string, Partial<Record<Side, (number | null)[][]>>>>;
 
 async function table(resultId: string, name: string): Promise<Table | null> {
-  const params = { path: { result_id: resultId, name } };
-  try {
-    const text = await unwrap(
-      client.GET("/api/v1/results/{result_id}/files/{name}", {
-        params,
-        parseAs: "text",
-        // The names of files hold slashes that the route wants as they are.
-        pathSerializer: () => `/api/v1/results/${resultId}/files/${name.split("/").map(encodeURIComponent).join("/")}`,
-      }),
-    );
-    return parseTable(text as unknown as string);
-  } catch (error) {
-    if (error instanceof Problem && error.status === 404) return null;
-    throw error;
-  }
+  const response = await readFile(resultId, name);
+  return response && parseTable(await response.text());
 }
 
 async function readCycles(resultId: string, document: ResultDocument): Promise<Cycles> {
@@ -30,8 +17,7 @@ async function readCycles(resultId: string, document: ResultDocument): Promise<C
   const trials = [...new Set(strides.map((stride) => stride.trial))];
   const angles: Record<string, Partial<Record<Side, (number | null)[][]>>> = {};
   for (const trial of trials) {
-    const folder = trials.length > 1 ? `${trial}/` : "";
-    const read = await table(resultId, `${folder}angles.csv`);
+    const read = await table(resultId, trialFile(trials, trial, "angles.csv"));
     if (!read) continue;
     for (const stride of strides.filter((each) => each.trial === trial)) {
       for (const curve of Object.keys(document.kinematics)) {

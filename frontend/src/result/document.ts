@@ -45,6 +45,8 @@ export interface Criterion {
   identifiable: boolean;
   at_bound?: boolean;
   cost_share?: number | null;
+  /** Where the weight lies with 95 % confidence. */
+  interval_95?: readonly [number, number] | null;
 }
 
 export interface Weights {
@@ -60,6 +62,9 @@ export interface Weights {
     weights: Record<string, number>;
     between_stride_sd: Record<string, number | null>;
   } | null;
+  strides?: Stride[];
+  /** Pairs of criteria of which one could take over the other's weight. */
+  not_told_apart?: [string, string][];
   notes?: string[];
 }
 
