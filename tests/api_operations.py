@@ -22,7 +22,7 @@ ALLOWED = {
         listUploads createUpload getUpload abandonUpload sendChunk finishUpload deleteAttachment createSubject
         changeSubject deleteSubject deleteResult createReport deleteReport signReport listColleagues""",
     "a": """listUsers createUser getUser changeUser deleteUser createPasswordLink listAuditLines getSystemState
-        setPriority""",
+        setPriority listRetentionRules setRetentionRule""",
 }
 MAY = {operation: letters for letters, operations in ALLOWED.items() for operation in operations.split()}
 
@@ -36,7 +36,15 @@ def operations_of(document):
 
 def address(method, path, case, number):
     """The path with identifiers of the case; unknown parameters get something harmless."""
-    ids = {"offset": 0, "name": "result.json", "kind": "json", "viewer_id": "none", "path": "", **case.ids}
+    ids = {
+        "offset": 0,
+        "name": "result.json",
+        "kind": "json",
+        "viewer_id": "none",
+        "path": "",
+        "subject": "web_sessions",
+        **case.ids,
+    }
     if path.endswith("/retry"):
         ids["analysis_id"] = case.failed_id
     if path.endswith(("/cancel", "/priority")):
@@ -69,6 +77,7 @@ def body_of(operation_id, case, number):
         "createUpload": {"session_id": case.session_id, "name": "walk.c3d", "size": 10},
         "createAnalysis": {"kind": "inspect", "recording_id": case.recording_id},
         "setPriority": {"priority": 5},
+        "setRetentionRule": {"days": 30},
         "createReport": {"kind": "report", "result_id": case.result_id},
         "signReport": {"password": PASSWORD},
         "createCohort": {"name": f"new {number}", "members": [{"result_id": case.result_id}]},

@@ -15,6 +15,7 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from .. import __version__
 from ..jobs.events import EventBroker
+from ..jobs.metrics import gauges_of
 from ..storage.database import Database
 from ..storage.files import open_store
 from ..storage.models import ApiToken, User, WebSession
@@ -37,6 +38,7 @@ from .routes import (
     recordings,
     reports,
     results,
+    retention,
     sessions,
     sign_in,
     single_sign_on,
@@ -70,6 +72,7 @@ ROUTERS = (
     reports.router,
     cohorts.router,
     audit_log.router,
+    retention.router,
     system.router,
 )
 S = HTTPStatus
@@ -129,6 +132,7 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
         sealing=Sealing.of(settings),
         events=EventBroker(database.url),
         viewers=Viewers(limits, _signed_out(database, settings)),
+        gauges=gauges_of(database),
     )
     app.state.services = services
     anyio.to_thread.current_default_thread_limiter().total_tokens = THREADS

@@ -31,6 +31,8 @@ class Permission(StrEnum):
     USERS_MANAGE = "users:manage"
     AUDIT_READ = "audit:read"
     SYSTEM_READ = "system:read"
+    SYSTEM_WRITE = "system:write"
+    """Rules of retention."""
 
 
 _P = Permission

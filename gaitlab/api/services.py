@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from prometheus_client import CollectorRegistry
+
 from ..jobs.events import EventBroker
 from ..storage.database import Database
 from ..storage.files import FileStore
@@ -20,3 +22,5 @@ class Services:
     sealing: Sealing
     events: EventBroker
     viewers: Viewers
+    gauges: CollectorRegistry
+    """What is counted in the database when Prometheus asks."""

@@ -9,9 +9,10 @@ from typing import Any
 
 from rich.console import Console
 from rich.table import Table
-from sqlalchemy import func, select, text
+from sqlalchemy import func, select
 
 from ..errors import GaitlabError, OutputError, StorageError
+from ..jobs.metrics import alive_workers
 from ..storage.database import Database
 from ..storage.files import FileStore, open_store
 from ..storage.migrate import newest_revision, present_revision
@@ -22,7 +23,6 @@ from .service import running_database
 
 LEAST_DISK = 5e9  # [bytes]
 SAMPLE = b"gaitlab doctor"
-WORKERS = text("SELECT count(*) FROM procrastinate_workers WHERE last_heartbeat > now() - make_interval(secs => 60)")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,8 +123,7 @@ def _workers(database: Database) -> Finding:
     if not present_revision(database):
         return Finding(subject="workers", text="none yet")
     with database.sessions() as session:
-        # Each worker opens the queue twice: for quick jobs and for computations.
-        alive = int(session.scalar(WORKERS) or 0) // 2
+        alive = alive_workers(session)
         waiting = session.scalar(select(func.count()).where(Job.status == JobStatus.QUEUED)) or 0
     return Finding(
         subject="workers",

@@ -1,4 +1,4 @@
-"""`gaitlab serve`, `worker`, `doctor`, `backup`, `restore` and `key`: running the web application."""
+"""The commands that run the web application and look after it."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -85,6 +85,32 @@ def restore(
     load("service").restore_from(_installation(data_dir, database_url, files, key_file), source)
 
 
+def retention(
+    keep: Annotated[
+        list[str] | None, typer.Option(help="SUBJECT=DAYS, or SUBJECT=default; may be given several times.")
+    ] = None,
+    now: Annotated[bool, typer.Option("--now", help="Remove at once what is too old.")] = False,
+    data_dir: DataDir = None,
+    database_url: DatabaseUrl = None,
+    files: Files = None,
+    key_file: KeyFile = None,
+) -> None:
+    """Show, change and apply the rules of how long things are kept; workers apply them once a day."""
+    load("upkeep").retention(_installation(data_dir, database_url, files, key_file), keep or (), now)
+
+
+def export_patient(
+    patient: Annotated[str, typer.Argument(help="Pseudonym or identifier.")],
+    target: Annotated[Path, typer.Argument(help="File to write, .zip; it holds the patient's name.")],
+    data_dir: DataDir = None,
+    database_url: DatabaseUrl = None,
+    files: Files = None,
+    key_file: KeyFile = None,
+) -> None:
+    """Write everything about one patient, rows and files, into one zip file."""
+    load("upkeep").write_patient(_installation(data_dir, database_url, files, key_file), patient, target)
+
+
 def key(path: Annotated[Path, typer.Argument(help="File to write; keep a copy elsewhere.")]) -> None:
     """Make a key that encrypts files at rest: without it they cannot be read any more."""
     load("service").make_key(path)
@@ -97,4 +123,4 @@ def _installation(
     return {"data_dir": data_dir, "database_url": database_url, "files": files, "key_file": key_file}
 
 
-SERVER_COMMANDS = (serve, worker, doctor, backup, restore, key)
+SERVER_COMMANDS = (serve, worker, doctor, backup, restore, retention, export_patient, key)

@@ -94,7 +94,7 @@ def first_account_link(url: str, base: str) -> str:
 def back_up_to(given: Mapping[str, Any], target: Path) -> None:
     """`gaitlab backup`."""
     settings = settings_of(given)
-    with running_database(settings) as (url, _), _opened(url) as database:
+    with running_database(settings) as (url, _), opened(url) as database:
         manifest = back_up(database, open_store(settings), target)
     typer.echo(f"{target}: {len(manifest.tables)} tables, {manifest.files} files, form {manifest.revision}")
 
@@ -102,7 +102,7 @@ def back_up_to(given: Mapping[str, Any], target: Path) -> None:
 def restore_from(given: Mapping[str, Any], source: Path) -> None:
     """`gaitlab restore`."""
     settings = settings_of(given)
-    with running_database(settings) as (url, _), _opened(url) as database:
+    with running_database(settings) as (url, _), opened(url) as database:
         manifest = restore(database, open_store(settings), source)
     typer.echo(f"restored {len(manifest.tables)} tables and {manifest.files} files of {manifest.made_at}")
 
@@ -119,7 +119,8 @@ def make_key(path: Path) -> None:
 
 
 @contextmanager
-def _opened(url: str) -> Generator[Database]:
+def opened(url: str) -> Generator[Database]:
+    """A database of a supported version, closed at the end."""
     with contextlib.closing(Database.open(url)) as database:
         database.check()
         yield database

@@ -84,7 +84,7 @@ class Runner:
             job = await self._persistently(lambda session: session.get(Job, claimed.job_id))
             if job is None:
                 return
-            log.info("job starts", kind=job.kind.value)
+            log.info("job starts", kind=job.kind.value, request_id=job.request_id)
             work = Work(kind=job.kind.value, settings=job.settings, inputs=tuple(job.inputs), folder=folder)
             try:
                 await asyncio.to_thread(_lay_out, self.store, work)

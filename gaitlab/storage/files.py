@@ -52,6 +52,10 @@ class Objects(Protocol):
         """All names, each with the time of its writing [s since 1970]."""
         ...
 
+    def answers(self) -> bool:
+        """Whether it can be used now; takes a few seconds at most."""
+        ...
+
 
 class FileStore:
     """The contents of an installation."""
@@ -125,6 +129,10 @@ class FileStore:
     def names(self) -> Iterator[tuple[str, float]]:
         """Names of everything kept, with the time of its writing [s since 1970]."""
         return self._objects.names()
+
+    def answers(self) -> bool:
+        """Whether the store can be used now; takes a few seconds at most."""
+        return self._objects.answers()
 
     def delete_object(self, name: str) -> None:
         """Remove what `names` listed."""

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator
+from datetime import timedelta
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -12,6 +13,18 @@ from obstore.store import ObjectStore, from_url
 from ..errors import StorageError
 
 CHUNK = 1 << 20
+PROBE = "0" * 64
+"""A name that no content has."""
+CLIENT = {
+    "connect_timeout": timedelta(seconds=5),
+    "read_timeout": timedelta(seconds=30),
+    # obstore counts the whole body of an answer; its 30 s would cut a large recording on a slow line.
+    "timeout": timedelta(hours=2),
+}
+RETRIES = {"max_retries": 4, "retry_timeout": timedelta(seconds=20)}
+"""obstore's own 10 retries in 180 s would let a request wait for minutes while the store is away."""
+AT_ONCE = {"max_retries": 0}
+PROBE_CLIENT = {"connect_timeout": timedelta(seconds=2), "timeout": timedelta(seconds=3)}
 
 
 class DiskObjects:
@@ -73,6 +86,10 @@ class DiskObjects:
         for path in self._folder.glob("??/*"):
             yield path.parent.name + path.name, path.stat().st_mtime
 
+    def answers(self) -> bool:
+        """Whether files can be written now, as far as a look can tell."""
+        return os.access(self.spool, os.W_OK)
+
     def _path(self, name: str) -> Path:
         return self._folder / name[:2] / name[2:]
 
@@ -80,14 +97,18 @@ class DiskObjects:
 class RemoteObjects:
     """Objects in an S3-compatible store; credentials come from the AWS_ variables of the environment."""
 
-    def __init__(self, store: ObjectStore) -> None:
-        self._store = store
+    def __init__(self, store: ObjectStore, probe: ObjectStore) -> None:
+        """`probe`: the same store by a client that gives up quickly."""
+        self._store, self._probe = store, probe
 
     @classmethod
     def open(cls, address: str) -> "RemoteObjects":
         """Store at an address such as s3://bucket/prefix."""
         try:
-            return cls(from_url(address))
+            return cls(
+                from_url(address, client_options=CLIENT | _choices(), retry_config=RETRIES),  # type: ignore[arg-type]
+                from_url(address, client_options=PROBE_CLIENT | _choices(), retry_config=AT_ONCE),  # type: ignore[arg-type]
+            )
         except (BaseError, ValueError) as error:
             raise StorageError(f"the file store {address} cannot be opened ({error})") from error
 
@@ -134,6 +155,21 @@ class RemoteObjects:
         for batch in obstore.list(self._store):
             for entry in batch:
                 yield entry["path"], entry["last_modified"].timestamp()
+
+    def answers(self) -> bool:
+        """Whether the store answers within a few seconds."""
+        try:
+            obstore.head(self._probe, PROBE)
+        except FileNotFoundError:
+            return True
+        except BaseError:
+            return False
+        return True
+
+
+def _choices() -> dict[str, bool]:
+    """What the environment says of the connection: obstore does not look there when it is given options."""
+    return {"allow_http": os.environ.get("AWS_ALLOW_HTTP", "").lower() in ("1", "true", "yes")}
 
 
 def _reason(error: BaseException) -> str:

@@ -11,7 +11,7 @@ from sqlalchemy import CursorResult, Delete, delete, func, select
 from sqlalchemy.orm import Session
 
 from ..errors import NotFound
-from .audit import SYSTEM
+from .audit import SYSTEM, Actor, Deed, record
 from .database import Database
 from .deletion import delete_patient
 from .files import FileStore
@@ -83,6 +83,12 @@ def set_rule(session: Session, subject: str, days: int | None) -> None:
     session.execute(delete(RetentionRule).where(RetentionRule.subject == subject))
     if days is not None:
         session.add(RetentionRule(subject=subject, days=days))
+
+
+def change_rule(session: Session, subject: str, days: int | None, actor: Actor) -> None:
+    """As `set_rule`, with a line in the audit log."""
+    set_rule(session, subject, days)
+    record(session, actor, Deed(action="update", kind="retention_rules", object_id=subject, detail={"days": days}))
 
 
 def rules(session: Session) -> dict[str, int | None]:

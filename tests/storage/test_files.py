@@ -17,7 +17,8 @@ SIZES = (0, 1, CHUNK, CHUNK + 1, 2 * CHUNK + 17)
 
 @pytest.fixture(params=["disk", "disk encrypted", "remote", "remote encrypted"])
 def any_store(request, tmp_path):
-    objects = DiskObjects(tmp_path / "files") if "disk" in request.param else RemoteObjects(MemoryStore())
+    memory = MemoryStore()
+    objects = DiskObjects(tmp_path / "files") if "disk" in request.param else RemoteObjects(memory, memory)
     return FileStore(objects, tmp_path, KEY if "encrypted" in request.param else None)
 
 

@@ -34,7 +34,7 @@ def get_readiness(request: Request, response: Response) -> dict[str, Any]:
             connection.execute(text("SELECT 1"))
     except SQLAlchemyError:
         state["database"] = "away"
-    if not services.settings.data_dir.is_dir():
+    if not services.settings.data_dir.is_dir() or not services.files.answers():
         state["files"] = "away"
     ready = set(state.values()) == {"ready"}
     response.status_code = HTTPStatus.OK if ready else HTTPStatus.SERVICE_UNAVAILABLE
@@ -44,7 +44,8 @@ def get_readiness(request: Request, response: Response) -> dict[str, Any]:
 @router.get("/metrics", response_class=Response, responses=content("text/plain"))
 def get_metrics(request: Request) -> Response:
     """Numbers for Prometheus: for askers with the configured token, or without one for this machine only."""
-    expected = services_of(request).settings.metrics_token
+    services = services_of(request)
+    expected = services.settings.metrics_token
     given = request.headers.get("authorization", "").removeprefix("Bearer ")
     if expected is not None:
         admitted = same(given, expected.get_secret_value())
@@ -52,7 +53,8 @@ def get_metrics(request: Request) -> Response:
         admitted = "x-forwarded-for" not in request.headers and _is_local(request)
     if not admitted:
         raise NotSignedIn("metrics need the token of the setting metrics_token")
-    return Response(generate_latest(request.app.state.metrics), media_type=CONTENT_TYPE_LATEST)
+    numbers = generate_latest(request.app.state.metrics) + generate_latest(services.gauges)
+    return Response(numbers, media_type=CONTENT_TYPE_LATEST)
 
 
 def _is_local(request: Request) -> bool:

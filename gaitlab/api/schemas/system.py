@@ -8,7 +8,7 @@ from uuid import UUID
 from pydantic import Field
 
 from ...storage.models import JobStatus
-from .forms import Line, Output, Paging
+from .forms import Input, Line, Output, Paging
 
 
 class SystemState(Output):
@@ -22,6 +22,19 @@ class SystemState(Output):
     database_bytes: int
     files: int
     file_bytes: int
+
+
+class RetentionRule(Output):
+    """How long something is kept."""
+
+    subject: str = Field(examples=["patients"])
+    days: int | None = Field(description="Null: for ever. Patients count from their last visit.", examples=[3650])
+
+
+class RetentionChange(Input):
+    """How long something is to be kept."""
+
+    days: int | None = Field(ge=1, le=100_000, description="Null: the default again.", examples=[3650])
 
 
 class PredictionQuantity(Output):
