@@ -59,6 +59,7 @@ def walk_arrays():
         "segment_names": np.array(SEGMENTS + TIPS),
         "segment_positions_measured": measured,
         "segment_positions_optimal": optimal,
+        "centre_of_mass_measured": measured[:, 0] + (0.0, 0.0, 0.1),
         "markers": np.concatenate([measured + (0.03, 0.0, 0.02), measured - (0.03, 0.0, 0.0)], axis=1),
         "marker_names": np.array([f"M{k}" for k in range(18)]),
         "bones": np.array(BONES),

@@ -45,6 +45,7 @@ def measured_arrays(
         "marker_names": np.array(names),
         "segment_names": np.array([segment.name for segment in subject.segments] + list(TIPS)),
         "segment_positions_measured": skeleton(subject, q, heading),
+        "centre_of_mass_measured": centre_of_mass(subject, q, heading),
         "bones": bones(subject),
         "contact_names": np.array(list(subject.contacts)),
         "phase": support_phases(events, time),
@@ -63,6 +64,18 @@ def skeleton(subject: SubjectModel, q: np.ndarray, heading: float) -> np.ndarray
     contacts = point_positions(subject, subject.contacts, q)
     tips = np.stack([contacts[name] for name in TIPS], axis=1)
     return gait_to_lab(np.concatenate([origins, tips], axis=1), heading)
+
+
+def centre_of_mass(subject: SubjectModel, q: np.ndarray, heading: float) -> np.ndarray:
+    """Of the whole body, sum m_i c_i / sum m_i over its segments, laboratory frame [m], shape (n, 3).
+
+    `q` are coordinates in the gait frame [m, rad], shape (n, n_q), `heading` its direction in the laboratory [rad].
+    """
+    poses = forward_kinematics(subject, q)
+    local = np.array([segment.centre_of_mass for segment in subject.segments])
+    mass = np.array([segment.mass for segment in subject.segments])
+    centres = poses.origins + np.einsum("nsij,sj->nsi", poses.rotations, local)
+    return gait_to_lab(np.einsum("s,nsi->ni", mass, centres) / mass.sum(), heading)
 
 
 def bones(subject: SubjectModel) -> np.ndarray:

@@ -115,6 +115,7 @@ def main(arguments: list[str]) -> int:
         _say(json.dumps({"error": str(error).replace(directory, "the result")}))
         return 1
     ended = threading.Event()
+    session.hide_controls()
     with session:
         _say(json.dumps({"trials": session.trials}))
         reporter = threading.Thread(target=_report, args=(session, _say, ended), daemon=True)

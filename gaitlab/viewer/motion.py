@@ -13,9 +13,11 @@ from ..report.walk_file import Walk, read_walk
 
 MARKERS, MEASURED, OPTIMAL = "markers", "measured", "model-optimal"
 PLATES, CONTACTS, PRESSURE = "plate forces", "model forces", "pressure centre"
-FLOOR = "floor"
-LAYERS: tuple[str, ...] = (MARKERS, MEASURED, OPTIMAL, PLATES, CONTACTS, PRESSURE, FLOOR)
+CENTRE, TRAILS, FLOOR = "centre of mass", "trails", "floor"
+LAYERS: tuple[str, ...] = (MARKERS, MEASURED, OPTIMAL, PLATES, CONTACTS, PRESSURE, CENTRE, TRAILS, FLOOR)
 """What can be switched on and off."""
+TRAIL_SECONDS = 1.0
+"""How far back the trails go [s]."""
 ARROW_LENGTH = 0.9
 """Length of the arrow of the largest force of a trial [m]."""
 
@@ -51,6 +53,8 @@ class Motion:
     contacts: Forces | None
     phase: tuple[str, ...]
     """Name of the phase per frame; empty if unknown."""
+    centre: np.ndarray | None
+    """Centre of mass of the whole body, measured [m], shape (n, 3)."""
     converged: bool
     """False if the document says that the weights, or the prediction, carry no certificate."""
     caption: str = ""
@@ -67,6 +71,8 @@ class Motion:
             PLATES: self.plates is not None,
             CONTACTS: self.contacts is not None,
             PRESSURE: self.plates is not None,
+            CENTRE: self.centre is not None,
+            TRAILS: True,
             FLOOR: True,
         }
         return tuple(layer for layer in LAYERS if present[layer])
@@ -90,6 +96,20 @@ class Motion:
         count = known.sum(axis=1)
         total = np.where(known, self.markers, 0.0).sum(axis=1)
         return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+    def trails(self, frame: int) -> np.ndarray:
+        """Ways of the last second up to a frame, as pieces from frame to frame [m], shape (n_pieces, 2, 3).
+
+        Of the centre of mass, or the pelvis where it is not known, and of what is furthest down on both legs.
+        """
+        points = [(self.pelvis if self.centre is None else self.centre)[:, None]]
+        if self.measured is not None and self.measured.shape[1] > 2:
+            # The skeleton's last two points are the tips of the feet.
+            points.append(self.measured[:, -2:])
+        since = int(np.searchsorted(self.time, self.time[frame] - TRAIL_SECONDS))
+        ways = np.concatenate(points, axis=1)[since : frame + 1]
+        pieces = np.stack([ways[:-1], ways[1:]], axis=2).reshape(-1, 2, 3)
+        return pieces[np.isfinite(pieces).all(axis=(1, 2))]
 
 
 def read_motion(directory: Path) -> Motion:
@@ -119,10 +139,16 @@ def read_motion(directory: Path) -> Motion:
         bone_sides=tuple(side_of(names[end]) if end < len(names) else None for _, end in bones.tolist()),
         plates=_forces(walk.vectors("grf_plates"), walk.vectors("cop_plates")),
         contacts=_contacts(walk, optimal),
+        centre=_centre(walk),
         phase=() if phase is None or phase.ndim != 1 else tuple(str(name) for name in phase),
         converged=converged,
         caption=caption,
     )
+
+
+def _centre(walk: Walk) -> np.ndarray | None:
+    centre = walk.numbers("centre_of_mass_measured", 2)
+    return None if centre is None or centre.shape != (len(walk.time), 3) else centre
 
 
 def _said(directory: Path) -> tuple[bool, str]:

@@ -5,7 +5,20 @@ from typing import Any
 import numpy as np
 import viser
 
-from .motion import CONTACTS, FLOOR, LAYERS, MARKERS, MEASURED, OPTIMAL, PLATES, PRESSURE, Forces, Motion
+from .motion import (
+    CENTRE,
+    CONTACTS,
+    FLOOR,
+    LAYERS,
+    MARKERS,
+    MEASURED,
+    OPTIMAL,
+    PLATES,
+    PRESSURE,
+    TRAILS,
+    Forces,
+    Motion,
+)
 from .skeleton import Placement, force_arrows, known_points, place_bones, unit_bone
 
 ROOT = "/walk"
@@ -15,6 +28,8 @@ COLOURS = {
     PLATES: (20, 130, 90),
     CONTACTS: (190, 80, 160),
     PRESSURE: (20, 130, 90),
+    CENTRE: (20, 20, 20),
+    TRAILS: (150, 158, 168),
 }
 SIDE_COLOURS = {"left": (200, 40, 30), "right": (29, 95, 174), None: (62, 72, 84)}
 """Of the measured skeleton."""
@@ -37,6 +52,8 @@ class Scene:
         self._add_bones(OPTIMAL, motion.optimal, 0.5)
         self._add_arrows(PLATES, motion.plates)
         self._add_arrows(CONTACTS, motion.contacts)
+        self._add_points(CENTRE, motion.centre, 0.05)
+        self._add_trails()
         self._add_points(PRESSURE, None if motion.plates is None else motion.plates.origins, 0.035)
 
     def is_shown(self, layer: str) -> bool:
@@ -62,6 +79,8 @@ class Scene:
         self._move_arrows(PLATES, motion.plates, frame)
         self._move_arrows(CONTACTS, motion.contacts, frame)
         self._move_pressure(frame)
+        self._move_points(CENTRE, None if motion.centre is None else motion.centre[:, None], frame)
+        self._move_trails(frame)
 
     def shift(self, frame: int) -> np.ndarray:
         """Way on the floor that brings the pelvis to the middle of its path [m], shape (3,)."""
@@ -134,6 +153,11 @@ class Scene:
             head_length=0.06,
         )
 
+    def _add_trails(self) -> None:
+        self._nodes[TRAILS] = self._server.scene.add_line_segments(
+            _path(TRAILS), points=np.zeros((1, 2, 3), dtype=np.float32), colors=COLOURS[TRAILS], thickness=0.006
+        )
+
     def _bones_at(self, joints: np.ndarray, frame: int) -> Placement:
         return place_bones(joints[frame] + self._offset, self._motion.bones, _BONE_RADIUS)
 
@@ -169,6 +193,12 @@ class Scene:
             return
         loaded = force_arrows(plates.origins[frame], plates.vectors[frame], 1.0)
         self._move_points(PRESSURE, loaded[None, :, 0], 0)
+
+    def _move_trails(self, frame: int) -> None:
+        pieces = self._motion.trails(frame)
+        if len(pieces):
+            self._nodes[TRAILS].points = (pieces + self._offset).astype(np.float32)
+        self._fill(TRAILS, len(pieces) > 0)
 
     def _fill(self, layer: str, filled: bool) -> None:
         self._filled[layer] = filled

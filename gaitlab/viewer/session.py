@@ -165,6 +165,10 @@ class Session:
             client.camera.look_at = camera.target
             client.camera.fov = FIELD_OF_VIEW
 
+    def hide_controls(self) -> None:
+        """Fold viser's own controls away: the page around the view has some."""
+        self._server.gui.main_panel.minimize()
+
     def recording(self) -> str:
         """The trial that is shown as one HTML page that plays it and needs nothing else."""
         serializer = self._server.get_scene_serializer()

@@ -1,8 +1,11 @@
 import numpy as np
+import pinocchio as pin
 import pytest
+from walking_body import marked_child, walking_coordinates
 
 from gaitlab.mocap.recording import Event, ForcePlate
-from gaitlab.pipelines.walk_arrays import centred_means, plate_at_frames, support_phases
+from gaitlab.multibody.pinocchio_model import to_pinocchio
+from gaitlab.pipelines.walk_arrays import centre_of_mass, centred_means, plate_at_frames, support_phases
 
 CORNERS = np.array([[1.0, 1.0, 0.0], [2.0, 1.0, 0.0], [2.0, 2.0, 0.0], [1.0, 2.0, 0.0]])
 
@@ -49,3 +52,12 @@ def test_phases_follow_the_events_of_both_sides():
 
 def test_without_events_the_phase_is_unknown():
     assert support_phases([], np.zeros(3)).tolist() == ["", "", ""]
+
+
+def test_the_centre_of_mass_is_the_one_of_pinocchio():
+    child = marked_child()
+    q = walking_coordinates(child, 5)
+    model = to_pinocchio(child)
+    data = model.createData()
+    expected = [pin.centerOfMass(model, data, row) for row in q]
+    assert centre_of_mass(child, q, 0.0) == pytest.approx(np.array(expected), abs=1e-12)

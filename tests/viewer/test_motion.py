@@ -3,7 +3,7 @@ import pytest
 from synthetic_output import document, walk_arrays, write_output
 
 from gaitlab.errors import OutputError
-from gaitlab.viewer.motion import CONTACTS, LAYERS, MEASURED, OPTIMAL, PLATES, PRESSURE, read_motion
+from gaitlab.viewer.motion import CENTRE, CONTACTS, LAYERS, MEASURED, OPTIMAL, PLATES, PRESSURE, read_motion
 
 
 def motion(directory, **changes):
@@ -22,6 +22,7 @@ def test_a_complete_walk_has_every_layer(tmp_path):
         ("cop_plates", {PLATES, PRESSURE}),
         ("bones", {MEASURED, OPTIMAL}),
         ("contact_names", {CONTACTS}),
+        ("centre_of_mass_measured", {CENTRE}),
     ],
 )
 def test_what_is_absent_has_no_layer(tmp_path, key, lost):
@@ -51,6 +52,15 @@ def test_stored_contact_points_are_preferred(tmp_path):
 def test_the_largest_force_is_an_arrow_of_known_length(tmp_path):
     shown = motion(tmp_path)
     assert shown.metres_per_newton * np.linalg.norm(shown.plates.vectors, axis=2).max() == pytest.approx(0.9)
+
+
+def test_trails_lead_up_to_the_frame_for_a_second(tmp_path):
+    shown = motion(tmp_path)
+    pieces = shown.trails(150)
+    assert len(pieces) == 3 * 100
+    assert pieces[-3, 1] == pytest.approx(shown.centre[150]) and pieces[0, 0] == pytest.approx(shown.centre[50])
+    assert pieces[-1, 1] == pytest.approx(shown.measured[150, -1])
+    assert len(shown.trails(0)) == 0
 
 
 def test_without_a_skeleton_the_markers_lead(tmp_path):
