@@ -8,7 +8,7 @@ import numpy as np
 
 Side = Literal["left", "right"]
 EventKind = Literal["foot_strike", "foot_off"]
-EventSource = Literal["file", "detected"]
+EventSource = Literal["file", "detected", "corrected"]
 SoleChangeKind = Literal["foot_flat", "heel_off"]
 
 

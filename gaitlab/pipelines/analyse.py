@@ -13,13 +13,13 @@ from ..inverse.conventional_calibration import Calibration
 from ..inverse.kinematics import InverseKinematics
 from ..inverse.leg_kinetics import KineticsSettings
 from ..mocap.c3d import read_c3d
-from ..mocap.events import events_of
 from ..mocap.recording import Event, Recording
 from ..multibody.marker_set import SEGMENT_OF_MARKER
 from ..multibody.scaling import SubjectSettings
 from ..multibody.subject import SubjectModel
 from ..signal.gaps import Gap, describe_gaps, fill_gaps
 from .calibration import assumed_parameters, calibrate_walk
+from .corrected_events import check_trials, events_to_use
 from .documents import Session, document_of
 from .kinetics import trial_kinetics
 from .model import motion_warnings, person_model, single_frames, whole_model_motion
@@ -84,6 +84,7 @@ def analyse(
     """Analyse recordings in memory; see `analyse_files`."""
     if static is not None:
         static = _filled(static, options)[0]
+    check_trials(options.events, walks)
     prepared = [_prepare(static, walk, options, progress) for walk in walks]
     subject = _build_subject(static, prepared[0], options)
     trials = tuple(_analyse_walk(subject, walk, options, progress) for walk in prepared)
@@ -124,7 +125,7 @@ def _prepare(static: Recording | None, walk: Recording, options: AnalysisOptions
 def _analyse_walk(subject: SubjectModel, walk: _Walk, options: AnalysisOptions, progress: Progress) -> TrialAnalysis:
     recording, kinematics = walk.recording, walk.kinematics
     progress(Step(stage="events", trial=recording.name))
-    events = events_of(recording, redetect=options.redetect_events)
+    events = events_to_use(recording, options.events, options.redetect_events)
     found, stride_warnings = full_cycles(recording, events)
     progress(Step(stage="whole-model kinematics", trial=recording.name))
     motion = whole_model_motion(subject, recording, kinematics)

@@ -24,6 +24,7 @@ from ..nlp.interior_point import InteriorPoint
 from ..nlp.sparse_solution import Status
 from ..ocp.mechanical import ContactStage
 from ..transcription.contact_rank import without_redundant_contacts
+from ..transcription.hermite import GAUSS_POINTS
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
 from ..walking.criteria import ALL, THESIS
@@ -221,9 +222,19 @@ def _refined(gait: PointFootGait, optimum: GaitOptimum, weights: np.ndarray) -> 
     fine = gait.finer(2)
     parts = zip(optimum.states, fine.durations, fine.n_intervals, strict=True)
     states = tuple(_between(x, duration, n) for x, duration, n in parts)
-    found = _level(fine, states).from_measurements(weights, (1.0, 0.0))
+    found = _level(fine, states).from_forces(weights, _forces_between(optimum, 2))
     if found.solution.status is not Status.SOLVED:
         raise NotConverged(f"{gait.name}: no optimal gait on the finer grid: {found.solution.status}")
+    return found
+
+
+def _forces_between(optimum: GaitOptimum, factor: int) -> list[np.ndarray]:
+    """Forces of the floor at the Gauss points of a finer grid, per stage (2 factor N_k, n_f)."""
+    found, n_q = list[np.ndarray](), optimum.level.n_q
+    for problem, x, n in zip(optimum.problems, optimum.solutions, optimum.level.gait.n_intervals, strict=True):
+        forces = problem.points(x.w)[:, 3 * n_q :]
+        times = [((np.arange(m)[:, None] + GAUSS_POINTS) / m).ravel() for m in (n, factor * n)]
+        found.append(np.stack([np.interp(times[1], times[0], force) for force in forces.T], axis=1))
     return found
 
 

@@ -30,6 +30,7 @@ def _rows(recording: Recording) -> Iterator[tuple[str, str]]:
     yield "markers", ", ".join(sorted(recording.markers))
     yield "markers with gaps", ", ".join(_gaps(recording)) or "none"
     yield "events", ", ".join(_events(recording)) or "none"
+    yield "event times", ", ".join(_event_times(recording)) or "none"
     yield "force plates", ", ".join(_plates(recording)) or "none"
     yield "body parameters", ", ".join(f"{k} {v:.4g}" for k, v in sorted(recording.parameters.items())) or "none"
     yield "outputs of other software", str(len(recording.model_outputs))
@@ -49,6 +50,11 @@ def _events(recording: Recording) -> Iterator[str]:
     counts = Counter((event.side, event.kind.replace("_", " ")) for event in recording.events)
     for (side, kind), count in sorted(counts.items()):
         yield f"{count} {side} {kind}"
+
+
+def _event_times(recording: Recording) -> Iterator[str]:
+    for event in sorted(recording.events, key=lambda event: event.time):
+        yield f"{event.side} {event.kind.replace('_', ' ')} {event.time:.4f}"
 
 
 def _plates(recording: Recording) -> Iterator[str]:

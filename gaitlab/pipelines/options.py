@@ -11,6 +11,7 @@ from ..multibody.anthropometry import AnthropometryName
 from ..walking.contact_schedule import Landing
 from ..walking.criteria import THESIS, by_name
 from .body_parameters import PLAUSIBLE
+from .corrected_events import CorrectedEvent, Corrections
 from .references import ReferenceOptions
 
 StaticOffsets = Literal["computed", "file"]
@@ -32,6 +33,8 @@ class AnalysisOptions:
     """Processes that solve arcs of the walk at the same time; 0: as many as there are processors."""
     redetect_events: bool = False
     """Detect events although the file has some."""
+    events: Corrections = field(default_factory=dict[str, tuple[CorrectedEvent, ...]])
+    """All events of a walk, by its name, where somebody corrected them."""
     static_offsets: StaticOffsets = "computed"
     """Whether offsets computed from the static trial are used, or those stored in its file."""
     forward: Forward = "laboratory axis"

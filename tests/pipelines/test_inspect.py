@@ -29,3 +29,11 @@ def test_an_almost_empty_file_is_described_too(rows):
     walk = synthetic_walk()
     described = rows(replace(walk, events=(), parameters={}))
     assert (described["events"], described["body parameters"], described["force plates"]) == ("none", "none", "none")
+
+
+def test_times_of_events_are_told(rows):
+    walk = synthetic_walk()
+    first = min(walk.events, key=lambda event: event.time)
+    times = rows(walk)["event times"].split(", ")
+    assert len(times) == len(walk.events)
+    assert times[0] == f"{first.side} {first.kind.replace('_', ' ')} {first.time:.4f}"

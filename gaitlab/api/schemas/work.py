@@ -24,6 +24,14 @@ from .forms import Edited, Input, Line, Output, Paging, Prose, Stored, Word
 from .patients import BodyParameters
 
 
+class CorrectedEvent(Input):
+    """Foot strike or foot off of one side."""
+
+    side: Literal["left", "right"]
+    kind: Literal["foot_strike", "foot_off"]
+    time_s: float = Field(ge=0, le=3600, description="From the first stored frame [s].")
+
+
 class AnalysisSettings(Input):
     """Choices of an analysis, as the options of `gaitlab analyse`."""
 
@@ -36,6 +44,11 @@ class AnalysisSettings(Input):
     landing: Landing = "soft"
     trunk_joint: bool = False
     redetect_events: bool = False
+    events: Mapping[Line, Annotated[Sequence[CorrectedEvent], Field(max_length=1000)]] = Field(
+        default_factory=dict[str, Sequence[CorrectedEvent]],
+        max_length=50,
+        description="All events of a walk, by its file's name without ending, where somebody corrected them.",
+    )
     static_offsets: StaticOffsets = "computed"
     longest_gap: float = Field(default=0.1, ge=0, le=10, description="Longest gap of a marker that is filled [s].")
     moment_frame: MomentFrame = "distal"
