@@ -113,7 +113,9 @@ def settings_from_parent() -> dict[str, Any]:
 
 
 def _end_with_parent() -> None:
-    sys.stdin.buffer.read()
+    # Not through sys.stdin: this thread would hold its lock when the process ends, which Python answers with an abort.
+    while os.read(0, 1024):
+        continue
     os.kill(os.getpid(), signal.SIGTERM)
     time.sleep(GRACE)
     os._exit(1)
