@@ -4,8 +4,12 @@ import { compareCells } from "../src/compare/compareCells";
 import { fill } from "../src/i18n/fill";
 import { advance, NOTHING, secondsLeft } from "../src/jobs/progress";
 import { percentAt, strideOf, stridesIn, timeAt, trialIn } from "../src/result/cycle";
+import { readNpz } from "../src/result/npz";
+import { stacked } from "../src/result/ShareChart";
 import { parseTable, resample } from "../src/result/table";
+import { sharesOf } from "../src/result/walk";
 import { changesOf } from "../src/result/changes";
+import { byTrial, eventsIn } from "../src/visit/events";
 import { foundIn } from "../src/visit/inspection";
 import { isWanted } from "../src/visit/upload";
 
@@ -95,4 +99,50 @@ it("writes changes as the command line does", () => {
 
 it("sorts unknown cells last", () => {
   expect([null, 2, 1].sort(compareCells)).toEqual([1, 2, null]);
+});
+
+describe("npz", () => {
+  // numpy: savez_compressed(time=[0.0, 0.5, 1.0], criteria_share=[[1.0, 3.0], [2.0, 2.0], [0.0, 4.0]], criteria_names=["a", "bö"])
+  const NPZ = 
+    "UEsDBC0AAAAIAAAAIQDcLUnY//////////8IABQAdGltZS5ucHkBABAAmAAAAAAAAABNAAAAAAAAAJvsF+obEMnIUMZQrZ6SWpxc" +
+    "pG6loG6TZqGuo6Cell9UUpSYF59flJIKEndLzClOBYoXZyQWpAL5GsY6mjoKtQoUAC4GFPDAHkJ/sAcAUEsDBC0AAAAIAAAAIQCP" +
+    "+QEU//////////8SABQAY3JpdGVyaWFfc2hhcmUubnB5AQAQALAAAAAAAAAAVgAAAAAAAACb7BfqGxDJyFDGUK2eklqcXKRupaBu" +
+    "k2ahrqOgnpZfVFKUmBefX5SSChJ3S8wpTgWKF2ckFqQC+RrGOgpGmjoKtQpkAy4GMPhgD6E5HCA0AzoNBQIOAFBLAwQtAAAACAAA" +
+    "ACEA5lbzHP//////////EgAUAGNyaXRlcmlhX25hbWVzLm5weQEAEACQAAAAAAAAAE0AAAAAAAAAm+wX6hsQychQxlCtnpJanFyk" +
+    "bqWgbhNqpK6joJ6WX1RSlJgXn1+UkgoSd0vMKU4FihdnJBakAvkaRjqaOgq1ChQArkQGCEgC4m9ADABQSwECLQMtAAAACAAAACEA" +
+    "3C1J2E0AAACYAAAACAAAAAAAAAAAAAAAgAEAAAAAdGltZS5ucHlQSwECLQMtAAAACAAAACEAj/kBFFYAAACwAAAAEgAAAAAAAAAA" +
+    "AAAAgAGHAAAAY3JpdGVyaWFfc2hhcmUubnB5UEsBAi0DLQAAAAgAAAAhAOZW8xxNAAAAkAAAABIAAAAAAAAAAAAAAIABIQEAAGNy" +
+    "aXRlcmlhX25hbWVzLm5weVBLBQYAAAAAAwADALYAAACyAQAAAAA=";
+  const bytes = Uint8Array.from(atob(NPZ), (letter) => letter.charCodeAt(0)).buffer;
+
+  it("is read as numpy wrote it", async () => {
+    const { numbers, texts } = await readNpz(bytes, ["time", "criteria_share", "criteria_names"]);
+    expect([...(numbers.get("time")?.values ?? [])]).toEqual([0, 0.5, 1]);
+    expect(numbers.get("criteria_share")?.shape).toEqual([3, 2]);
+    expect(texts.get("criteria_names")).toEqual(["a", "bö"]);
+  });
+
+  it("gives shares that sum to one at each instant", async () => {
+    const arrays = await readNpz(bytes, ["time", "criteria_share"]);
+    const shares = sharesOf(arrays, { trial: "walk", side: "left", start_s: 0, end_s: 1 }, ["x", "y"]);
+    expect(shares?.names).toEqual(["x", "y"]);
+    expect([shares?.rows[0]?.[0], shares?.rows[0]?.[50], shares?.rows[0]?.[100]]).toEqual([0.25, 0.5, 0]);
+    expect(stacked(shares?.rows ?? [])[1]?.every((edge) => Math.abs((edge ?? 0) - 100) < 1e-9)).toBe(true);
+  });
+});
+
+describe("events", () => {
+  it("come out of the inspection's row", () => {
+    expect(eventsIn("left foot strike 0.5120, right foot off 0.6300")).toEqual([
+      { side: "left", kind: "foot_strike", time_s: 0.512 },
+      { side: "right", kind: "foot_off", time_s: 0.63 },
+    ]);
+    expect(eventsIn("none")).toEqual([]);
+  });
+
+  it("are sent in time order under the trial's name, only where they were corrected", () => {
+    const recordings = [{ id: "1", name: "walk1.c3d" }, { id: "2", name: "walk2.c3d" }];
+    const [late, early] = [0.9, 0.2].map((time_s) => ({ side: "left", kind: "foot_off", time_s }) as const);
+    expect(byTrial({ "1": [late!, early!] }, recordings)).toEqual({ walk1: [early, late] });
+  });
 });

@@ -4,16 +4,22 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from contextlib import contextmanager
 from pathlib import Path
+from uuid import UUID
 
 import pytest
 from web_world import PASSWORD, running_world
 
 from gaitlab.api.pages import FRONTEND
-from gaitlab.storage.models import Role
+from gaitlab.jobs.imported import import_result
+from gaitlab.jobs.request import JobRequest
+from gaitlab.storage.models import JobKind, Role
 
 WAIT_MS = 20_000
+WEIGHTED = Path(__file__).parent / "weights_of_the_demo.zip"
+"""What `gaitlab demo` wrote for walk1, without the pages: some minutes of computation."""
 
 
 @pytest.fixture(scope="session")
@@ -104,3 +110,20 @@ def sign_in(page, login):
     page.locator("input[type=password]").fill(PASSWORD)
     page.get_by_role("button", name="Sign in").click()
     page.get_by_role("heading", name="Patients").wait_for()
+
+
+def add_weighted_result(world, folder):
+    """Id of a result with weights, in a visit of its own."""
+    with zipfile.ZipFile(WEIGHTED) as packed:
+        packed.extractall(folder)
+    case = world.make_case()
+    request = JobRequest(
+        kind=JobKind.ANALYSE, inputs=(), patients=frozenset({UUID(case.patient_id)}), session_id=UUID(case.session_id)
+    )
+    with world.services.database.transaction() as session:
+        return str(import_result(session, world.services.files, request, folder).id)
+
+
+@pytest.fixture(scope="session")
+def weighted(clinic, tmp_path_factory):
+    return add_weighted_result(clinic, tmp_path_factory.mktemp("weighted"))

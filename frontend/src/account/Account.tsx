@@ -13,7 +13,7 @@ interface Account {
   signOut: () => Promise<void>;
 }
 
-const KEY = ["account"];
+export const ACCOUNT_KEY = ["account"];
 const Context = createContext<Account | null>(null);
 
 async function currentSession(): Promise<SignedIn | null> {
@@ -27,7 +27,7 @@ async function currentSession(): Promise<SignedIn | null> {
 
 export function SessionProvider({ children }: { children: ReactNode }) {
   const queries = useQueryClient();
-  const { data, isPending } = useQuery({ queryKey: KEY, queryFn: currentSession, refetchInterval: 60_000 });
+  const { data, isPending } = useQuery({ queryKey: ACCOUNT_KEY, queryFn: currentSession, refetchInterval: 60_000 });
   const session = data ?? null;
   setCsrfToken(session?.csrf_token ?? "");
 
@@ -35,8 +35,8 @@ export function SessionProvider({ children }: { children: ReactNode }) {
     // A refused request tells that the session has ended elsewhere.
     return queries.getQueryCache().subscribe(({ query }) => {
       const { error } = query.state;
-      if (error instanceof Problem && error.status === 401 && query.queryKey[0] !== KEY[0]) {
-        queries.setQueryData(KEY, null);
+      if (error instanceof Problem && error.status === 401 && query.queryKey[0] !== ACCOUNT_KEY[0]) {
+        queries.setQueryData(ACCOUNT_KEY, null);
       }
     });
   }, [queries]);
@@ -47,12 +47,12 @@ export function SessionProvider({ children }: { children: ReactNode }) {
     may: (permission) => session?.permissions.includes(permission) ?? false,
     enter: (entered) => {
       setCsrfToken(entered.csrf_token);
-      queries.setQueryData(KEY, entered);
+      queries.setQueryData(ACCOUNT_KEY, entered);
     },
     signOut: async () => {
       await unwrap(client.POST("/api/v1/auth/sign-out"));
-      queries.removeQueries({ predicate: ({ queryKey }) => queryKey[0] !== KEY[0] });
-      queries.setQueryData(KEY, null);
+      queries.removeQueries({ predicate: ({ queryKey }) => queryKey[0] !== ACCOUNT_KEY[0] });
+      queries.setQueryData(ACCOUNT_KEY, null);
     },
   };
   return <Context.Provider value={account}>{children}</Context.Provider>;

@@ -1,4 +1,4 @@
-import { Badge, createTheme, MantineProvider } from "@mantine/core";
+import { Badge, createTheme, MantineProvider, Modal } from "@mantine/core";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import { Problem } from "../api/client";
 import { SessionProvider } from "../account/Account";
@@ -7,11 +7,15 @@ import { Pages } from "./Pages";
 
 const theme = createTheme({
   primaryColor: "cyan",
-  primaryShade: { light: 9, dark: 8 },
+  primaryShade: { light: 9, dark: 9 },
   fontFamily: "system-ui, -apple-system, 'Segoe UI', Roboto, sans-serif",
   defaultRadius: "md",
   // Capitals are hard to read in German, whose nouns have their own.
-  components: { Badge: Badge.extend({ styles: { label: { textTransform: "none" } } }) },
+  components: {
+    Badge: Badge.extend({ styles: { label: { textTransform: "none" } } }),
+    // A dialog's header is none of the page's landmarks.
+    Modal: Modal.extend({ defaultProps: { attributes: { header: { role: "presentation" } } } }),
+  },
 });
 
 const queries = new QueryClient({

@@ -12,6 +12,7 @@ const VisitPage = lazy(() => import("../visit/VisitPage"));
 const ResultPage = lazy(() => import("../result/ResultPage"));
 const ComparePage = lazy(() => import("../compare/ComparePage"));
 const JobsPage = lazy(() => import("../jobs/JobsPage"));
+const AccountPage = lazy(() => import("../account/AccountPage"));
 const AdminPage = lazy(() => import("../admin/AdminPage"));
 
 function Waiting() {
@@ -41,6 +42,7 @@ export function Pages() {
           <Route path="/results/:id">{({ id }) => <ResultPage key={id} id={id} />}</Route>
           <Route path="/compare" component={ComparePage} />
           <Route path="/jobs" component={JobsPage} />
+          <Route path="/account" component={AccountPage} />
           <Route path="/admin" component={AdminPage} />
           <Route>
             <Redirect to="/patients" replace />

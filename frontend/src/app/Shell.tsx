@@ -1,4 +1,4 @@
-import type { ReactNode } from "react";
+import type { MouseEvent, ReactNode } from "react";
 import { Anchor, AppShell, Button, Group, Text } from "@mantine/core";
 import { Link, useLocation } from "wouter";
 import { useAccount } from "../account/Account";
@@ -12,12 +12,23 @@ const PLACES: { path: string; label: Key; needs: "patients:read" | "analyses:rea
   { path: "/admin", label: "admin", needs: "system:read" },
 ];
 
+const MAIN = "main";
+
+/** Move the keyboard behind the menu; the address stays, as it names a page. */
+function skip(event: MouseEvent): void {
+  event.preventDefault();
+  document.getElementById(MAIN)?.focus();
+}
+
 export function Shell({ children }: { children: ReactNode }) {
   const { t } = useI18n();
   const { session, may, signOut } = useAccount();
   const [location] = useLocation();
   return (
     <AppShell header={{ height: 56 }} padding="md">
+      <a className="skip" href="#main" onClick={skip}>
+        {t("skipMenu")}
+      </a>
       <AppShell.Header>
         <Group h="100%" px="md" justify="space-between" wrap="nowrap">
           <Group gap="lg" wrap="nowrap" component="nav" aria-label={t("mainMenu")}>
@@ -39,16 +50,16 @@ export function Shell({ children }: { children: ReactNode }) {
           </Group>
           <Group gap="sm" wrap="nowrap">
             <Preferences />
-            <Text size="sm" visibleFrom="md">
+            <Anchor component={Link} href="/account" size="sm" visibleFrom="sm" c="var(--mantine-color-text)">
               {session?.user.display_name || session?.user.login}
-            </Text>
+            </Anchor>
             <Button size="xs" variant="default" onClick={() => void signOut()}>
               {t("signOut")}
             </Button>
           </Group>
         </Group>
       </AppShell.Header>
-      <AppShell.Main>{children}</AppShell.Main>
+      <AppShell.Main id={MAIN} tabIndex={-1}>{children}</AppShell.Main>
     </AppShell>
   );
 }

@@ -1,6 +1,7 @@
 import { useMemo, useState } from "react";
 import { Button, Group, NativeSelect, SegmentedControl, Stack, Text, Title } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
+import type { Schemas } from "../api/client";
 import { PALETTES, useColours, usePalette, type Palette } from "../app/colours";
 import { useI18n, type Key } from "../i18n/I18n";
 import { CyclePanel, type Line, type PanelData } from "./CyclePanel";
@@ -10,18 +11,21 @@ import { useCycles, type Cycles } from "./cycles";
 import { SIDES, type Band, type CurveSides, type ResultDocument } from "./document";
 import { KINEMATICS, KINETICS, type PanelLayout } from "./panels";
 import { ValuesModal } from "./ValuesModal";
+import { VideoPane } from "./VideoPane";
 import { ViewPane } from "./ViewPane";
 
 interface Props {
   resultId: string;
   document: ResultDocument;
   cursor: Cursor;
+  videos: readonly Schemas["Attachment"][];
 }
 
-export function CurvesTab({ resultId, document, cursor }: Props) {
+export function CurvesTab({ resultId, document, cursor, videos }: Props) {
   const { t } = useI18n();
   const [view, setView] = useState("average");
   const [in3d, scene] = useDisclosure();
+  const [inVideo, film] = useDisclosure();
   const [picked, setPicked] = useState<PanelLayout | null>(null);
   const cycles = useCycles(resultId, document, view === "consistency");
   const strides = useMemo(() => stridesIn(document), [document]);
@@ -37,7 +41,7 @@ export function CurvesTab({ resultId, document, cursor }: Props) {
           onPick={() => setPicked(layout)}
         />
       ) : (
-        !in3d && <div key={index} />
+        !(in3d || inVideo) && <div key={index} />
       ),
     );
   return (
@@ -54,13 +58,18 @@ export function CurvesTab({ resultId, document, cursor }: Props) {
         />
         <Group>
           <PaletteChoice />
+          {videos.length > 0 && (
+            <Button variant={inVideo ? "filled" : "default"} aria-pressed={inVideo} onClick={film.toggle}>
+              {t("videoBeside")}
+            </Button>
+          )}
           <Button variant={in3d ? "filled" : "default"} aria-pressed={in3d} onClick={scene.toggle}>
             {t("beside3d")}
           </Button>
         </Group>
       </Group>
       <Legend document={document} />
-      <div className={in3d ? "with-view" : undefined}>
+      <div className={in3d || inVideo ? "with-view" : undefined}>
         <Stack>
           <div className="panels">{panels(KINEMATICS)}</div>
           {document.kinetics && (
@@ -87,7 +96,12 @@ export function CurvesTab({ resultId, document, cursor }: Props) {
             </>
           )}
         </Stack>
-        {in3d && <ViewPane resultId={resultId} strides={strides} cursor={cursor} />}
+        {(in3d || inVideo) && (
+          <div className="sticky">
+            {in3d && <ViewPane resultId={resultId} strides={strides} cursor={cursor} />}
+            {inVideo && <VideoPane videos={videos} strides={strides} cursor={cursor} />}
+          </div>
+        )}
       </div>
       <ValuesModal layout={picked} data={picked && source(picked.name)} onClose={() => setPicked(null)} />
     </Stack>

@@ -1,5 +1,5 @@
 /** One curve of both sides over the cycle, with the reference band, foot-off lines and the shared cursor. */
-import { useEffect, useMemo, useRef } from "react";
+import { useEffect, useMemo, useRef, type KeyboardEvent } from "react";
 import { Paper, Text } from "@mantine/core";
 import uPlot from "uplot";
 import { useColours, type Colours } from "../app/colours";
@@ -9,6 +9,8 @@ import { SIDES, type Band, type Side, type Values } from "./document";
 import type { PanelLayout } from "./panels";
 
 const HEIGHT = 170;
+/** Per cent of the cycle that a key moves the cursor by. */
+const STEPS: Readonly<Record<string, number>> = { ArrowLeft: -1, ArrowRight: 1, PageDown: -10, PageUp: 10, Home: -100, End: 100 };
 
 /** One line of a panel; `dash` tells sessions apart, colour sides. */
 export interface Line {
@@ -100,6 +102,16 @@ function drawMarks(chart: uPlot, footOff: PanelData["footOff"], colours: Colours
   ctx.restore();
 }
 
+/** Arrow keys move the cursor, Enter does what a click does. */
+function byKey(event: KeyboardEvent, cursor: Cursor, pick: () => void): void {
+  if (event.key === "Enter") return pick();
+  const step = STEPS[event.key];
+  if (step === undefined) return;
+  event.preventDefault();
+  const percent = cursor.percent === null ? 0 : cursor.percent + step;
+  cursor.move(Math.min(Math.max(percent, 0), 100), null);
+}
+
 export function CyclePanel({ layout, data, cursor, onPick }: Props) {
   const { name, t, number } = useI18n();
   const colours = useColours();
@@ -177,6 +189,8 @@ export function CyclePanel({ layout, data, cursor, onPick }: Props) {
         ref={place}
         role="img"
         aria-label={t("curveOf", { name: title })}
+        tabIndex={0}
+        onKeyDown={(event) => byKey(event, cursor, () => onPick?.(layout.name))}
         style={{ minHeight: HEIGHT, cursor: onPick ? "pointer" : undefined }}
         onClick={() => onPick?.(layout.name)}
       />

@@ -8,7 +8,7 @@ export function Identifiability({ weights }: { weights: Weights }) {
   const interval = ({ interval_95: range }: Criterion) =>
     range ? ` ${t("interval95", { low: number(100 * range[0]), high: number(100 * range[1]) })}` : "";
   return (
-    <List size="sm">
+    <List size="sm" data-testid="identifiability">
       {weights.criteria.map((each) => (
         <List.Item key={each.name}>
           <b>{name(each.name)}</b>: {t(each.identifiable ? "known" : each.at_bound ? "atBound" : "unknown")}

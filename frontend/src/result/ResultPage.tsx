@@ -5,11 +5,13 @@ import { Link } from "wouter";
 import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
+import { useAttachments } from "../visit/Attachments";
 import { CurvesTab } from "./CurvesTab";
 import { Cursor } from "./cursor";
 import type { ResultDocument } from "./document";
 import { NumbersTab } from "./NumbersTab";
 import { ReportTab } from "./ReportTab";
+import { isVideo } from "./VideoPane";
 import { WeightsTab } from "./WeightsTab";
 
 /** The document of a result; it never changes. */
@@ -32,6 +34,8 @@ export default function ResultPage({ id }: { id: string }) {
     queryFn: () => unwrap(client.GET("/api/v1/results/{result_id}", { params: { path: { result_id: id } } })),
   });
   const document = useResultDocument(id);
+  const attachments = useAttachments(result.data?.session_id ?? null);
+  const videos = useMemo(() => (attachments.data?.items ?? []).filter(isVideo), [attachments.data]);
   if (!result.data || !document.data) return <ErrorNote error={result.error ?? document.error} />;
   return (
     <Stack>
@@ -44,7 +48,7 @@ export default function ResultPage({ id }: { id: string }) {
           <Tabs.Tab value="report">{t("report")}</Tabs.Tab>
         </Tabs.List>
         <Tabs.Panel value="curves" pt="md">
-          <CurvesTab resultId={id} document={document.data} cursor={cursor} />
+          <CurvesTab resultId={id} document={document.data} cursor={cursor} videos={videos} />
         </Tabs.Panel>
         <Tabs.Panel value="weights" pt="md">
           <WeightsTab resultId={id} document={document.data} />

@@ -5,12 +5,20 @@ import { useAccount } from "../account/Account";
 import { client, ifMatch, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
+import { EventEditor } from "./EventEditor";
+import type { CorrectedEvent } from "./events";
 import { foundIn, type Found } from "./inspection";
 
 type Recording = Schemas["Recording"];
 type Kind = Schemas["RecordingKind"];
 
-export function RecordingCard({ recording }: { recording: Recording }) {
+interface Props {
+  recording: Recording;
+  corrected: readonly CorrectedEvent[] | undefined;
+  onCorrect: (events: readonly CorrectedEvent[] | undefined) => void;
+}
+
+export function RecordingCard({ recording, corrected, onCorrect }: Props) {
   const { t } = useI18n();
   const { may } = useAccount();
   const queries = useQueryClient();
@@ -36,7 +44,7 @@ export function RecordingCard({ recording }: { recording: Recording }) {
       <Group justify="space-between">
         <Group>
           <Text fw={600}>{recording.name}</Text>
-          {found ? <Badges found={found} /> : <Loader size="xs" aria-label={t("reading")} />}
+          {found ? <Badges found={found} /> : <Loader size="xs" role="status" aria-label={t("reading")} />}
         </Group>
         <Group gap="xs">
           <NativeSelect
@@ -57,6 +65,7 @@ export function RecordingCard({ recording }: { recording: Recording }) {
           {may("patients:write") && (
             <Button size="xs" variant="default" onClick={() => remove.mutate()}>
               {t("delete")}
+              <span className="unseen"> {recording.name}</span>
             </Button>
           )}
         </Group>
@@ -75,6 +84,9 @@ export function RecordingCard({ recording }: { recording: Recording }) {
       {found && (
         <Collapse expanded={open}>
           <Details found={found} />
+          {recording.kind === "walk" && may("analyses:run") && (
+            <EventEditor stored={found.eventTimes} corrected={corrected} onChange={onCorrect} />
+          )}
         </Collapse>
       )}
     </Paper>

@@ -5,13 +5,15 @@ import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { useSubject } from "./BodyParameters";
+import { byTrial, type Corrections } from "./events";
 
 interface Props {
   visitId: string;
   recordings: readonly Schemas["Recording"][];
+  corrections: Corrections;
 }
 
-export function RunPanel({ visitId, recordings }: Props) {
+export function RunPanel({ visitId, recordings, corrections }: Props) {
   const { t } = useI18n();
   const queries = useQueryClient();
   const subject = useSubject(visitId);
@@ -26,7 +28,7 @@ export function RunPanel({ visitId, recordings }: Props) {
             kind: "analyse",
             session_id: visitId,
             subject_id: subject.data?.id ?? null,
-            settings: { weights, redetect_events: redetect },
+            settings: { weights, redetect_events: redetect, events: byTrial(corrections, walks) },
           },
         }),
       ),

@@ -31,6 +31,7 @@ export function Upload({ visitId }: { visitId: string }) {
         note(file.name, { done: 0, error });
       }
       await queries.invalidateQueries({ queryKey: ["recordings", visitId] });
+      await queries.invalidateQueries({ queryKey: ["attachments", visitId] });
     }
   };
 

@@ -1,4 +1,5 @@
-import { Anchor, Badge, Group, Paper, Stack, Text, Title } from "@mantine/core";
+import { useState } from "react";
+import { Anchor, Badge, Group, Stack, Text, Title } from "@mantine/core";
 import { useQuery } from "@tanstack/react-query";
 import { Link } from "wouter";
 import { useAccount } from "../account/Account";
@@ -6,7 +7,10 @@ import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { JobCard } from "../jobs/JobCard";
+import { Attachments } from "./Attachments";
 import { BodyParameters } from "./BodyParameters";
+import type { Corrections } from "./events";
+import { Examination } from "./Examination";
 import { RecordingCard } from "./RecordingCard";
 import { RunPanel } from "./RunPanel";
 import { Upload } from "./Upload";
@@ -16,6 +20,7 @@ const LOOK_AGAIN_MS = 2_000;
 export default function VisitPage({ id }: { id: string }) {
   const { t, date } = useI18n();
   const { may } = useAccount();
+  const [corrections, setCorrections] = useState<Corrections>({});
   const path = { session_id: id };
   const visit = useQuery({
     queryKey: ["visit", id],
@@ -50,18 +55,30 @@ export default function VisitPage({ id }: { id: string }) {
       {may("patients:write") && <Upload visitId={id} />}
       <ErrorNote error={recordings.error} />
       {files.map((recording) => (
-        <RecordingCard key={recording.id} recording={recording} />
+        <RecordingCard
+          key={recording.id}
+          recording={recording}
+          corrected={corrections[recording.id]}
+          onCorrect={(events) => setCorrections(withEvents(corrections, recording.id, events))}
+        />
       ))}
+      <Attachments visitId={id} />
       {files.length > 0 && (
         <>
           <BodyParameters visitId={id} recordings={files} />
-          {may("analyses:run") && <RunPanel visitId={id} recordings={files} />}
+          {may("analyses:run") && <RunPanel visitId={id} recordings={files} corrections={corrections} />}
         </>
       )}
       <Analyses jobs={jobs.data?.items ?? []} />
-      {Object.keys(visit.data.examination).length > 0 && <Examination entries={visit.data.examination} />}
+      <Examination visit={visit.data} />
     </Stack>
   );
+}
+
+/** The corrections with other events of one recording; none: those of the file. */
+function withEvents(corrections: Corrections, id: string, events: Corrections[string] | undefined): Corrections {
+  const { [id]: _, ...others } = corrections;
+  return events ? { ...others, [id]: events } : others;
 }
 
 function Analyses({ jobs }: { jobs: readonly Schemas["Job"][] }) {
@@ -74,29 +91,5 @@ function Analyses({ jobs }: { jobs: readonly Schemas["Job"][] }) {
         <JobCard key={job.id} job={job} />
       ))}
     </>
-  );
-}
-
-function words(value: unknown): string {
-  if (Array.isArray(value)) return value.map(words).join("; ");
-  if (value !== null && typeof value === "object") {
-    return Object.entries(value)
-      .map(([name, each]) => `${name.replaceAll("_", " ")} ${words(each)}`)
-      .join(", ");
-  }
-  return String(value);
-}
-
-function Examination({ entries }: { entries: Readonly<Record<string, unknown>> }) {
-  const { t, name } = useI18n();
-  return (
-    <Paper withBorder p="md">
-      <Title order={2}>{t("examination")}</Title>
-      {Object.entries(entries).map(([part, value]) => (
-        <Text key={part}>
-          <b>{name(part)}</b>: {words(value)}
-        </Text>
-      ))}
-    </Paper>
   );
 }

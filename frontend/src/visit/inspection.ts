@@ -1,11 +1,13 @@
 /** What the job 'inspect' found in a recording. */
 import type { Schemas } from "../api/client";
+import { eventsIn, type CorrectedEvent } from "./events";
 
 export interface Found {
   frames: string;
   markers: readonly string[];
   gaps: readonly string[];
   events: string;
+  eventTimes: readonly CorrectedEvent[];
   plates: string;
   parameters: Readonly<Record<string, number>>;
   warnings: readonly string[];
@@ -29,6 +31,7 @@ export function foundIn(recording: Pick<Schemas["Recording"], "inspection">): Fo
     markers: list(texts.get("markers")),
     gaps: list(texts.get("markers with gaps")),
     events: texts.get("events") ?? "",
+    eventTimes: eventsIn(texts.get("event times")),
     plates: texts.get("force plates") ?? "",
     parameters: Object.fromEntries(parameters),
     warnings: list(texts.get("warnings"), "; "),

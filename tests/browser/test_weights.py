@@ -1,0 +1,96 @@
+"""The weights page of a real result, and the 3D view beside its curves."""
+
+import io
+import json
+import re
+import zipfile
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from .conftest import WEIGHTED
+
+pytestmark = pytest.mark.slow
+CURVE = "Knee flexion over the gait cycle"
+SCENE_MS = 120_000
+"""A software renderer on a busy machine takes its time."""
+
+
+@pytest.fixture(scope="module")
+def stored():
+    """The document that the page shows."""
+    with zipfile.ZipFile(WEIGHTED) as packed:
+        return json.loads(packed.read("result.json"))["weights"]
+
+
+@pytest.fixture
+def weights_page(page, weighted):
+    page.goto(f"/results/{weighted}")
+    page.get_by_role("tab", name="Weights").click()
+    page.get_by_test_id("weights").wait_for()
+    return page
+
+
+def test_the_weights_are_those_of_the_result(weights_page, stored):
+    shown = weights_page.get_by_test_id("weights").inner_text()
+    printed = [float(number) for number in re.findall(r"(\d+\.\d)(?= ±| %)", shown)]
+    assert printed == [pytest.approx(100 * each["weight"], abs=0.051) for each in stored["criteria"]]
+
+
+def test_what_the_walk_tells_is_said_in_words(weights_page, stored):
+    sentences = weights_page.get_by_test_id("identifiability").inner_text()
+    assert sentences.count("this walk tells the weight") == sum(each["identifiable"] for each in stored["criteria"])
+
+
+def test_share_over_the_cycle_and_optimal_angles_are_drawn(weights_page):
+    weights_page.get_by_role("img", name="Share of each criterion over the cycle").locator("canvas").wait_for()
+    knee = weights_page.get_by_role("img", name=CURVE)
+    knee.locator(".u-over").hover(position={"x": 100, "y": 40})
+    values = re.findall(r"-?\d+\.\d", weights_page.get_by_test_id("readout-knee_flexion").inner_text())
+    left, left_of_model, right, right_of_model = map(float, values)
+    assert left == pytest.approx(left_of_model, abs=8.0) and right == pytest.approx(right_of_model, abs=8.0)
+
+
+@pytest.fixture
+def scene(page, weighted):
+    page.goto(f"/results/{weighted}")
+    page.get_by_role("button", name="3D beside the curves").click()
+    page.get_by_test_id("frame").get_by_text("frame").wait_for(timeout=SCENE_MS)
+    page.frame_locator("iframe").locator("canvas").first.wait_for(timeout=SCENE_MS)
+    return page
+
+
+def frame_of(page):
+    return int(page.get_by_test_id("frame").get_attribute("data-frame"))
+
+
+def test_the_3d_frame_follows_the_cursor_and_is_drawn(scene):
+    over = scene.get_by_role("img", name=CURVE).locator(".u-over")
+    over.hover(position={"x": 20, "y": 40})
+    scene.wait_for_timeout(500)
+    early = frame_of(scene)
+    over.hover(position={"x": 200, "y": 40})
+    scene.wait_for_function(f"document.querySelector('[data-frame]').dataset.frame > {early + 10}")
+    picture = imread(io.BytesIO(scene.locator("iframe").screenshot(timeout=SCENE_MS)))[..., :3]
+    # Neither black nor empty: bones of the left leg are red, the model's orange.
+    red = (picture[..., 0] > 0.6) & (picture[..., 1] < 0.35) & (picture[..., 2] < 0.35)
+    assert red.sum() > 30 and picture.mean() > 0.3
+    assert len(np.unique((picture * 15).astype(int).reshape(-1, 3), axis=0)) > 20
+
+
+def test_playing_moves_the_cursor_of_the_curves(scene):
+    scene.get_by_role("button", name="Play").click()
+    readout = scene.get_by_test_id("readout-knee_flexion")
+    scene.wait_for_function("document.querySelector('[data-testid=readout-knee_flexion]').textContent !== ''")
+    first = readout.inner_text()
+    scene.wait_for_function(
+        f"![{json.dumps(first)}, ''].includes(document.querySelector('[data-testid=readout-knee_flexion]').textContent)"
+    )
+
+
+def test_a_picture_of_the_scene_is_saved(scene):
+    with scene.expect_download(timeout=SCENE_MS) as download:
+        scene.get_by_role("button", name="Save picture").click()
+    picture = imread(download.value.path())
+    assert picture.shape[0] > 100 and picture[..., :3].std() > 0.01
