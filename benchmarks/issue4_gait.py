@@ -10,9 +10,11 @@ from scipy.interpolate import CubicHermiteSpline
 
 from gaitlab.errors import NotConverged
 from gaitlab.nlp.sensitivity import Sensitivity
+from gaitlab.nlp.workers import worker_pool
 from gaitlab.pipelines.gait_benchmark import GaitRun, solve_case
 from gaitlab.pipelines.gait_cases import GaitCase, available_cases, load_case
-from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait, first_guess
+from gaitlab.walking.gait_guess import smooth_states
+from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait
 
 SEEDS = 50
 SIZES = (31, 62, 124, 248, 496, 992)
@@ -24,9 +26,11 @@ COVERED = 43
 @measurement(issue=4, line=1)
 def thesis_gait_seconds() -> Iterator[Row]:
     for name in available_cases():
-        solve_case(load_case(name), 1.0, 0)
-        run = solve_case(load_case(name), 1.0, 0)
-        yield Row(quantity="warm, one core", value=run.seconds, limit=LIMITS[name], unit="s", subject=name)
+        with worker_pool() as workers:
+            first, *warm = [solve_case(load_case(name), 1.0, 0, workers=workers) for _ in range(4)]
+        run = sorted(warm, key=lambda run: run.seconds)[1]
+        yield Row(quantity="first in new processes", value=first.seconds, limit="<= 30", unit="s", subject=name)
+        yield Row(quantity="warm, median of three", value=run.seconds, limit=LIMITS[name], unit="s", subject=name)
         speed_up = run.case.thesis.seconds / run.seconds
         yield Row(quantity="thesis's time over ours", value=speed_up, limit="", unit="", subject=name)
 
@@ -102,7 +106,8 @@ def _regridded(case: GaitCase, n: int) -> GaitLevel:
     sizes = [int(k) for k in np.round(shares * n)]
     sizes[1] += n - sum(sizes)
     n_q, states = case.gait.subject.n_q, list[np.ndarray]()
-    for x, duration, k in zip(first_guess(case.gait, case.measured(0.0, 0)), case.gait.durations, sizes, strict=True):
+    guess = smooth_states(case.gait.states, case.gait.durations, case.measured(0.0, 0).q)
+    for x, duration, k in zip(guess, case.gait.durations, sizes, strict=True):
         spline = CubicHermiteSpline(np.linspace(0.0, duration, len(x)), x[:, :n_q], x[:, n_q:])
         times = np.linspace(0.0, duration, k + 1)
         states.append(np.hstack([spline(times), spline(times, 1)]))

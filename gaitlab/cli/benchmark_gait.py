@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 
 from ..errors import NotConverged
+from ..nlp.workers import worker_pool
 from ..pipelines.gait_benchmark import COLUMNS, rows, solve_case
 from ..pipelines.gait_cases import CASES, available_cases, load_case, thesis_gait
 from ..report.gait_benchmark_figure import coordinates, postures, torques, velocities
@@ -27,7 +28,8 @@ def gait(
     for name in names:
         case = load_case(name)
         console.print(f"{case.thesis.title} ...", style="dim")
-        run = solve_case(case, noise, seed)
+        with worker_pool() as workers:
+            run = solve_case(case, noise, seed, workers=workers)
         table, course = rows(run), courses(run.optimum)
         console.print(as_table(case.thesis.title, COLUMNS, table))
         title = case.thesis.title

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import AbstractContextManager, nullcontext
 from queue import SimpleQueue
 from types import TracebackType
 from typing import Protocol, Self, TypeVar, cast
@@ -34,6 +35,12 @@ def usable_processors() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def worker_pool(count: int = 0) -> "AbstractContextManager[Workers | None]":
+    """A context of so many processes, as many as there are processors by default; None where one would be all."""
+    count = count or usable_processors()
+    return Workers(count) if count > 1 else nullcontext()
 
 
 class Workers:

@@ -42,7 +42,7 @@ TRACKING_TORQUE, TRACKING_ACCELERATION = 1e-5, 1e-6
 """Weights of squared torques and accelerations beside squared tracking errors [rad]."""
 ENDS = 50.0
 """Factor on the tracking of velocities at the ends of a stage, which keeps landings slow."""
-TORQUE_FLOOR, SMOOTHNESS_FLOOR, FORCE_WEIGHT = 0.01, 0.05, 1e-4
+TORQUE_FLOOR, FORCE_WEIGHT = 0.01, 1e-4
 """The floors of `walking.identification`."""
 PATH = (10.0, 1.0, 0.1, 0.0)
 """Weights of tracking on the way from the tracked motion to the optimal one."""
@@ -68,7 +68,7 @@ def make_case(thesis: ThesisGait) -> GaitCase:
     normalisers, accelerations = on_track.criteria(), on_track.squares(2 * plain.subject.n_q + 3, 3 * plain.subject.n_q)
     raw = thesis.weights * thesis.scalings * normalisers
     weights = raw / raw.sum()
-    gait = _gait(thesis, ends, normalisers, 2.0 * SMOOTHNESS_FLOOR / accelerations)
+    gait = _gait(thesis, ends, normalisers, 2.0 * thesis.smoothness / accelerations)
     optimum = _optimum(gait, start, weights)
     fine = _refined(gait, optimum, weights)
     return GaitCase(

@@ -45,6 +45,8 @@ class ThesisGait:
     """gamma, shape (4,)."""
     scalings: np.ndarray
     """gamma^sca, shape (4,)."""
+    smoothness: float
+    """Weight of normalised squared angular accelerations beside criteria that sum to one: ours."""
     objective: float
     seconds: float
     iterations: int
@@ -71,6 +73,7 @@ CASES: Mapping[str, ThesisGait] = {
             n_intervals=(24, 28, 10),
             weights=np.array([9.9969e-01, 3.1267e-04, 0.0, 0.0]),
             scalings=np.array([1e3, 1e-4, 1.0, 1.0]),
+            smoothness=0.05,
             objective=2.4724,
             seconds=6.45074e5,
             iterations=41,
@@ -87,6 +90,8 @@ CASES: Mapping[str, ThesisGait] = {
             n_intervals=(35, 60, 20),
             weights=np.array([1.5997e-07, 7.3423e-01, 2.1784e-01, 4.7929e-02]),
             scalings=np.array([1e5, 1e-3, 1e-2, 1e-2]),
+            # With 0.05 the swing leg of its long single support turns to the singular angles of knee and ankle.
+            smoothness=0.2,
             objective=1.0599,
             seconds=1.10279e6,
             iterations=29,

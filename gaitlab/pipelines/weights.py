@@ -1,7 +1,6 @@
 """From measured coordinates to the weights of the criteria: the seam between gait analysis and optimal control."""
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
@@ -17,7 +16,7 @@ from ..mocap.cycles import full_strides
 from ..mocap.recording import Event, Recording
 from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
-from ..nlp.workers import Workers, usable_processors
+from ..nlp.workers import Workers, worker_pool
 from ..walking.contact_phases import GaitEvents, contact_phases, foot_directions
 from ..walking.contact_schedule import Landing, ScheduleSettings, contact_stages
 from ..walking.criteria import by_name
@@ -91,7 +90,7 @@ def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeight
     strides, skipped = usable_strides(request)
     progress(Step(stage="preparing the model (the first time on a machine: a minute)", trial=request.recording.name))
     walking_functions(layout_of(strides[0][1].subject))
-    with _workers(request.processes) as workers:
+    with worker_pool(request.processes) as workers:
         explained, failed = _explain_all(request, strides, progress, workers)
         unseen = _unseen(explained)
     main = explained[0]
@@ -102,11 +101,6 @@ def identify_weights(request: WeightsRequest, progress: Progress) -> TrialWeight
     found = main.found
     gait = identified_gait(found.optimum, found.estimate.theta, request.heading) if found.is_certified else None
     return TrialWeights(entry=entry, arrays=arrays, warnings=(*skipped, *failed), gait=gait)
-
-
-def _workers(processes: int) -> AbstractContextManager[Workers | None]:
-    count = processes or usable_processors()
-    return Workers(count) if count > 1 else nullcontext()
 
 
 def replace_strides(entry: WeightsEntry, strides: list[StrideWeights], unseen: dict[str, float]) -> WeightsEntry:

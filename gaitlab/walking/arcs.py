@@ -65,13 +65,7 @@ class ArcTask:
 
     def run(self) -> SparseSolution:
         """Solution of the first method that solves it, else of the last."""
-        problem = MechanicalProblem(self._structure(), self.data)
-        found = self.methods[0].solve(problem, self.start)
-        for method in self.methods[1:]:
-            if found.status is Status.SOLVED:
-                break
-            found = method.solve(problem, self.start)
-        return found
+        return solve_in_turn(MechanicalProblem(self._structure(), self.data), self.start, self.methods)
 
     def _structure(self) -> MechanicalStructure:
         if self.key not in _structures:
@@ -79,6 +73,18 @@ class ArcTask:
                 del _structures[next(iter(_structures))]
             _structures[self.key] = MechanicalStructure(self.layout, walking_functions(self.model).functions)
         return _structures[self.key]
+
+
+def solve_in_turn(
+    problem: MechanicalProblem, start: SparseSolution | np.ndarray, methods: Sequence[InteriorPoint]
+) -> SparseSolution:
+    """Solution of the first method that solves a problem from a start, variables (n_w,), else of the last."""
+    found = methods[0].solve(problem, start)
+    for method in methods[1:]:
+        if found.status is Status.SOLVED:
+            break
+        found = method.solve(problem, start)
+    return found
 
 
 COST_NOISE = 1e-6

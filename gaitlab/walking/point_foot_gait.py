@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from uuid import uuid4
 
 import numpy as np
 
@@ -25,12 +26,15 @@ from ..nlp.interior_point import InteriorPoint, Iterate
 from ..nlp.sensitivity import Sensitivity
 from ..nlp.solution import KKTResiduals
 from ..nlp.sparse_solution import SparseSolution, Status, certify
+from ..nlp.workers import Workers
 from ..ocp.mechanical import ContactStage
 from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
+from .arcs import ArcTask, solve_in_turn
 from .contact_schedule import thesis_stages
 from .criteria import ALL, THESIS
+from .gait_guess import smooth_states
 from .model import POINTS, ROOT, walking_functions
 from .tracking import N_FORCES
 
@@ -49,6 +53,9 @@ the nodes from ringing."""
 
 PATH = (100.0, 1.0, 0.1, 0.0)
 """Weights of half the mean squared residual on the way from the measurements to the optimal gait."""
+
+NEAR_BARRIER = 1e-5
+"""First barrier parameter where motion and forces are known nearly, but no multipliers."""
 
 NEARBY = 15
 """Iterations granted to a start that should be close."""
@@ -105,6 +112,8 @@ class GaitLevelSettings:
     )
     barriers: tuple[float, ...] = (1e-4, 1e-3, 1e-2)
     """First barrier parameters that are tried in turn from far starts."""
+    on_the_way: float = 1e-3
+    """Tolerance of problems that only lead to the next one; their barrier parameter stays."""
 
 
 class GaitOptimum:
@@ -197,9 +206,13 @@ class GaitLevel:
         measured: MeasuredGait,
         settings: GaitLevelSettings | None = None,
         first: tuple[np.ndarray, ...] | None = None,
+        workers: Workers | None = None,
     ) -> None:
-        """`first` are states to start from, per stage (N_k + 1, 2 n_q); smoothed measurements by default."""
-        self.tracking = 0.0
+        """`first` are states to start from, per stage (N_k + 1, 2 n_q); smoothed measurements by default.
+
+        Workers solve the stages side by side.
+        """
+        self.tracking, self.workers, self._key = 0.0, workers, uuid4().hex
         self.gait, self.measured, self.settings = gait, measured, settings or GaitLevelSettings()
         self.indices = [list(ALL).index(name) for name in THESIS]
         self.n_q = gait.subject.n_q
@@ -207,7 +220,7 @@ class GaitLevel:
         self.layout = layout_of(subject)
         self.p = np.concatenate([parameter_vector(subject), np.zeros(3 * (self.n_q - ROOT))])
         self.running_scale = [1.0 / (gait.normalisers * duration) for duration in gait.durations]
-        self.first = first_guess(gait, measured) if first is None else first
+        self.first = smooth_states(gait.states, gait.durations, measured.q) if first is None else first
         self.structures = tuple(self._structure(k) for k in range(len(gait.durations)))
 
     @property
@@ -271,9 +284,23 @@ class GaitLevel:
         """Solve for theta, shape (n_theta,), from the measurements: tracking first, then less, at last none."""
         problems = self.problems(theta)
         starts: Sequence[SparseSolution | np.ndarray] = [self._guess(p, k) for k, p in enumerate(problems)]
+        rough = [replace(m, tol=self.settings.on_the_way, mu_final=m.mu_initial) for m in self._far]
         for tracking in path[:-1]:
-            starts = self._solve(self.problems(theta, tracking), starts, self._far).solutions
+            starts = self._solve(self.problems(theta, tracking), starts, rough).solutions
         return self._solve(self.problems(theta, path[-1]), starts, self._far)
+
+    def from_forces(self, theta: np.ndarray, forces: Sequence[np.ndarray]) -> GaitOptimum:
+        """Solve for theta, shape (n_theta,), from the first states and forces of the floor at the Gauss points.
+
+        The forces [body weights] of each stage have shape (2 N_k, n_f), those of points in the air are not read.
+        """
+        problems, starts = self.problems(theta), list[np.ndarray]()
+        for k, problem in enumerate(problems):
+            w, index = self._guess(problem, k), problem.shared.force_index
+            w[index[index >= 0]] = forces[k][index >= 0]
+            starts.append(w)
+        near = replace(self.settings.solver, mu_initial=NEAR_BARRIER)
+        return self._solve(problems, starts, (near, *self._far))
 
     def at_start(self, theta: np.ndarray) -> GaitOptimum:
         """The first guess for theta, shape (n_theta,), in the form of an optimum, with its residuals."""
@@ -294,15 +321,21 @@ class GaitLevel:
         starts: Sequence[SparseSolution | np.ndarray],
         methods: Sequence[InteriorPoint],
     ) -> GaitOptimum:
-        solutions = list[SparseSolution]()
-        for problem, start in zip(problems, starts, strict=True):
-            found = methods[0].solve(problem, start)
-            for method in methods[1:]:
-                if found.status is Status.SOLVED:
-                    break
-                found = method.solve(problem, start)
-            solutions.append(found)
-        return GaitOptimum(self, problems, solutions)
+        pairs = zip(problems, starts, strict=True)
+        if self.workers is None:
+            return GaitOptimum(self, problems, [solve_in_turn(p, start, methods) for p, start in pairs])
+        tasks = [
+            ArcTask(
+                key=f"{self._key}-{k}",
+                model=self.layout,
+                layout=problem.shared.layout,
+                data=problem.data,
+                start=start,
+                methods=tuple(methods),
+            )
+            for k, (problem, start) in enumerate(pairs)
+        ]
+        return GaitOptimum(self, problems, self.workers.map(tasks))
 
     def split(self, x: SparseSolution) -> list[SparseSolution]:
         """The stages of a joint solution."""
@@ -325,29 +358,6 @@ class GaitLevel:
             used = index >= 0
             w[index[used]] = -np.linalg.lstsq(by_force[point, used].T, missing[point], rcond=None)[0]
         return w
-
-
-def first_guess(gait: PointFootGait, measured: MeasuredGait) -> tuple[np.ndarray, ...]:
-    """Smooth states between the given ones, near the measurements, per stage, shapes (N_k + 1, 2 n_q).
-
-    The cubic through the given states plus s^2 (1 - s)^2 times a polynomial in s, fitted to the measurements.
-    """
-    found, n_q = list[np.ndarray](), gait.subject.n_q
-    for duration, q, ends in zip(gait.durations, measured.q, gait.states, strict=True):
-        n = len(q) - 1
-        s = np.linspace(0.0, 1.0, n + 1)
-        (q0, v0), (q1, v1) = ends[0].reshape(2, n_q), ends[1].reshape(2, n_q)
-        cubic = np.polynomial.Polynomial
-        hermite = [cubic([1, 0, -3, 2]), cubic([0, 1, -2, 1]), cubic([0, 0, 3, -2]), cubic([0, 0, -1, 1])]
-        bubble = [cubic([0, 0, 1, -2, 1]) * cubic.basis(i) for i in range(min(6, max(2, n // 4)))]
-        known = np.stack([q0, duration * v0, q1, duration * v1])
-        fixed = np.stack([h(s) for h in hermite], axis=1) @ known
-        table = np.stack([b(s) for b in bubble], axis=1)
-        coefficients = np.linalg.lstsq(table[1:-1], (q - fixed)[1:-1], rcond=None)[0]
-        rates = np.stack([h.deriv()(s) for h in hermite], axis=1) @ known
-        rates += np.stack([b.deriv()(s) for b in bubble], axis=1) @ coefficients
-        found.append(np.hstack([fixed + table @ coefficients, rates / duration]))
-    return tuple(found)
 
 
 def _joined(parts: Sequence[SparseSolution]) -> SparseSolution:

@@ -9,12 +9,12 @@ from gaitlab.multibody.kinematics import point_positions
 from gaitlab.pipelines.gait_benchmark_data import after_impact, in_order
 from gaitlab.pipelines.gait_cases import load_case
 from gaitlab.walking.gait_courses import courses
-from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait, first_guess
+from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait
 
 
-@pytest.fixture(scope="module")
-def case():
-    return load_case("cp-child")
+@pytest.fixture(scope="module", params=["cp-child", "able-bodied-child"])
+def case(request):
+    return load_case(request.param)
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +23,9 @@ def level(case):
 
 
 def test_sizes_are_those_of_the_thesis(case):
-    assert case.gait.n_intervals == (24, 28, 10)
-    assert sum(case.gait.n_intervals) + 1 == case.thesis.n_measured == 63
+    grids = {"cp-child": (24, 28, 10), "able-bodied-child": (35, 60, 20)}
+    assert case.gait.n_intervals == grids[case.thesis.name]
+    assert tuple(len(q) - 1 for q in case.q) == case.gait.n_intervals
     np.testing.assert_allclose(case.weights.sum(), 1.0)
 
 
@@ -45,15 +46,6 @@ def test_velocities_jump_by_the_law_of_impact(case, stage, point):
     assert np.abs(after[n_q:] - before[n_q:]).max() > 0.5
 
 
-def test_the_first_guess_keeps_the_given_states_and_smooths(case):
-    measured = case.measured(1.0, 0)
-    guess = first_guess(case.gait, measured)
-    for states, ends, q, truth in zip(guess, case.gait.states, measured.q, case.q, strict=True):
-        np.testing.assert_allclose(states[[0, -1]], ends, atol=1e-9)
-        n_q = q.shape[1]
-        assert np.std(states[1:-1, :n_q] - truth[1:-1]) < 0.7 * np.std(q[1:-1] - truth[1:-1])
-
-
 def test_the_jacobian_of_the_cost_is_that_of_finite_differences(level):
     start, theta = level.at_start(np.zeros(4)), np.array([0.4, 0.3, 0.2, 0.1])
     problem, x = level.problems(theta)[2], start.solutions[2]
@@ -64,9 +56,9 @@ def test_the_jacobian_of_the_cost_is_that_of_finite_differences(level):
     assert problem.derivatives(x.w, *zero).grad @ direction == pytest.approx(difference, rel=1e-5)
 
 
-def test_courses_hold_every_stage(level):
+def test_courses_hold_every_stage(level, case):
     course = courses(level.at_start(np.zeros(4)))
-    assert [len(t) for t in course.times] == [25, 29, 11]
+    assert [len(t) - 1 for t in course.times] == list(case.gait.n_intervals)
     assert [t.shape[1] for t in course.torques] == [18, 18, 18]
     assert course.joints[0].shape[1:] == (5, 3)
 
