@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from statistics import median
 
 from registry import Row, measurement
-from service_kills import Service, demo_files, kill_at_random
+from service_kills import Plan, Service, demo_files, kill_at_random
 
 PORT = 18765
-KILLS, ANALYSES, INSPECTIONS = 200, 20, 80
-DEADLINE = 4 * 3600.0
+PLAN = Plan(kills=200, inspections=80, analyses=10, solves=10, pause=(0.5, 10.0), deadline=4 * 3600.0)
 LATER_STARTS = 3
 
 
@@ -33,16 +32,18 @@ def start_of_the_service() -> Iterator[Row]:
 
 @measurement(issue=6, line=1)
 def kills_at_random() -> Iterator[Row]:
-    report = kill_at_random(demo_files(), KILLS, (ANALYSES, INSPECTIONS), DEADLINE)
-    total = ANALYSES + INSPECTIONS
-    lost = total - report.statuses["succeeded"]
+    report, subject = kill_at_random(demo_files(), PLAN), f"{PLAN.jobs} jobs"
     for kind, count in sorted(report.kills.items()):
-        yield Row(quantity=f"kill -9 of {kind}", value=count, limit="", unit="", subject=f"{total} jobs")
-    yield Row(quantity="kills", value=report.kills.total(), limit=">= 200", unit="", subject=f"{total} jobs")
-    yield Row(quantity="analyses among them", value=report.analyses, limit=">= 20", unit="", subject=f"{total} jobs")
+        yield Row(quantity=f"kill -9 of {kind}", value=count, limit="", unit="", subject=subject)
+    yield Row(quantity="kills", value=report.kills.total(), limit=">= 200", unit="", subject=subject)
+    analyses = PLAN.analyses + PLAN.solves
+    yield Row(quantity="analyses among them", value=analyses, limit=">= 20", unit="", subject=subject)
+    yield Row(quantity="analyses with weights", value=PLAN.solves, limit="", unit="", subject=subject)
+    yield Row(quantity="begun again", value=report.interrupted, limit=">= 1", unit="", subject=subject)
+    lost = PLAN.jobs - report.statuses["succeeded"]
     for quantity, value in (("lost", lost), ("done twice", report.twice), ("damaged uploads", report.damaged)):
-        yield Row(quantity=quantity, value=value, limit="<= 0", unit="", subject=f"{total} jobs")
-    yield Row(quantity="time of all", value=report.seconds, limit="", unit="s", subject=f"{total} jobs")
+        yield Row(quantity=quantity, value=value, limit="<= 0", unit="", subject=subject)
+    yield Row(quantity="time of all", value=report.seconds, limit="", unit="s", subject=subject)
 
 
 def _wait_until_ready() -> None:

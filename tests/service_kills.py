@@ -46,7 +46,8 @@ class Report:
 
     kills: Counter = field(default_factory=Counter)
     statuses: Counter = field(default_factory=Counter)
-    analyses: int = 0
+    interrupted: int = 0
+    """Jobs that needed more than one attempt."""
     results: int = 0
     twice: int = 0
     damaged: int = 0
@@ -115,45 +116,61 @@ def runs(process, module):
         return False
 
 
-def submit_jobs(database, store, files, analyses, inspections):
+@dataclass(frozen=True)
+class Plan:
+    """What is computed, and how often something is killed meanwhile."""
+
+    kills: int
+    inspections: int
+    analyses: int
+    """Of the clinical part only: angles, events, kinetics, scores."""
+    solves: int
+    """Analyses with everything, the walk and its weights included."""
+    pause: tuple[float, float]
+    """Shortest and longest time between two kills [s]."""
+    deadline: float
+    """Longest time for all of it [s]."""
+    seed: int = 0
+    """Of what is killed and when."""
+
+    @property
+    def jobs(self):
+        return self.inspections + self.analyses + self.solves
+
+
+def submit_jobs(database, store, files, plan):
     """Upload recordings and ask for jobs; returns the digests of what was acknowledged."""
     digests = []
-    for number in range(analyses + inspections):
-        kind = JobKind.ANALYSE if number < analyses else JobKind.INSPECT
+    wanted = [(JobKind.ANALYSE, {})] * plan.solves + [(JobKind.ANALYSE, {"weights": False})] * plan.analyses
+    # One after the other of each sort, so that kills hit all of them.
+    random.Random(plan.seed).shuffle(wanted := wanted + [(JobKind.INSPECT, {})] * plan.inspections)
+    for number, (kind, settings) in enumerate(wanted):
         contents = [(path.name, path.read_bytes()) for path in files[: None if kind is JobKind.ANALYSE else 1]]
         visit = make_visit(database, store, contents, f"P{number:04d}")
-        submit_job(database, visit, kind, settings={"weights": False} if kind is JobKind.ANALYSE else {})
+        submit_job(database, visit, kind, settings=settings)
         digests += [each.sha256 for each in visit.recordings]
     return digests
 
 
-def kill_at_random(files, kills, jobs, deadline, seed=0):
-    """Run the jobs while processes are killed.
-
-    Args:
-        files: Recordings of an analysis, the static trial first.
-        kills: How many kills.
-        jobs: Numbers of analyses and inspections.
-        deadline: Longest time for all of it [s].
-        seed: Of what is killed and when.
-    """
-    begin, choice, report = time.monotonic(), random.Random(seed), Report(analyses=jobs[0])
+def kill_at_random(files, plan):
+    """Run the jobs while processes are killed; `files`: recordings of an analysis, the static trial first."""
+    begin, choice, report = time.monotonic(), random.Random(plan.seed), Report()
     service = Service()
     service.start()
     try:
         database = service.database()
         store = open_store(Settings(data_dir=service.data))
-        digests = submit_jobs(database, store, files, *jobs)
-        while time.monotonic() - begin < deadline:
+        digests = submit_jobs(database, store, files, plan)
+        while time.monotonic() - begin < plan.deadline:
             unfinished = count_unfinished(database)
-            if unfinished == 0 and report.kills.total() >= kills:
+            if unfinished == 0 and report.kills.total() >= plan.kills:
                 break
-            if report.kills.total() < kills:
+            if report.kills.total() < plan.kills:
                 pid = service.victim(kind := choice.choice([*VICTIMS, "postgres"]))
                 if pid is not None:
                     kill(pid)
                     report.kills[kind] += 1
-            time.sleep(choice.uniform(0.5, 4.0))
+            time.sleep(choice.uniform(*plan.pause))
         summarise(database, store, digests, report)
         database.close()
     finally:
@@ -184,6 +201,8 @@ def summarise(database, store, digests, report):
         report.statuses.update(status.value for status in session.scalars(select(Job.status)))
         report.results = session.scalar(select(func.count()).select_from(Result))
         report.twice = report.results - session.scalar(select(func.count(Result.job_id.distinct())))
+        again = select(func.count()).select_from(Job).where(Job.attempt > 1)
+        report.interrupted = session.scalar(again)
         done = session.scalar(select(func.count()).select_from(Job).where(Job.status == JobStatus.SUCCEEDED))
     report.twice += abs(report.results - done)
     for digest in set(digests):
