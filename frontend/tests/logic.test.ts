@@ -1,6 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { problemOf } from "../src/api/client";
 import { compareCells } from "../src/compare/compareCells";
+import { meets } from "../src/compare/filters";
+import { csvCell, widen } from "../src/compare/wide";
 import { fill } from "../src/i18n/fill";
 import { advance, NOTHING, secondsLeft } from "../src/jobs/progress";
 import { percentAt, strideOf, stridesIn, timeAt, trialIn } from "../src/result/cycle";
@@ -98,7 +100,8 @@ it("writes changes as the command line does", () => {
 });
 
 it("sorts unknown cells last", () => {
-  expect([null, 2, 1].sort(compareCells)).toEqual([1, 2, null]);
+  expect([null, 2, 1].sort((a, b) => compareCells(a, b))).toEqual([1, 2, null]);
+  expect([null, 1, 2].sort((a, b) => compareCells(a, b, -1))).toEqual([2, 1, null]);
 });
 
 describe("npz", () => {
@@ -144,5 +147,34 @@ describe("events", () => {
     const recordings = [{ id: "1", name: "walk1.c3d" }, { id: "2", name: "walk2.c3d" }];
     const [late, early] = [0.9, 0.2].map((time_s) => ({ side: "left", kind: "foot_off", time_s }) as const);
     expect(byTrial({ "1": [late!, early!] }, recordings)).toEqual({ walk1: [early, late] });
+  });
+});
+
+describe("comparison", () => {
+  const tables = {
+    quantities: {
+      columns: ["result", "group", "quantity", "side", "value"],
+      rows: [["a", "", "gps", "left", 7], ["b", "", "gps", "left", 9], ["a", "", "gps_overall", "", 8]],
+    },
+    weights: { columns: ["result", "criterion", "weight"], rows: [["b", "torque", 0.4]] },
+  };
+
+  it("makes a row of each result", () => {
+    const { quantities, values } = widen(tables, ["a", "b"]);
+    expect(quantities.map(({ key }) => key)).toEqual(["gps left", "gps_overall", "weight torque"]);
+    expect([values.get("a")?.get("gps left"), values.get("b")?.get("weight torque")]).toEqual([7, 0.4]);
+    expect(values.get("b")?.has("gps_overall")).toBe(false);
+  });
+
+  it("filters by words and by conditions", () => {
+    const columns = ["result", "gps left"];
+    expect(meets(["P-1 · walk", 7.5], columns, "walk gps>7")).toBe(true);
+    expect(meets(["P-1 · walk", 7.5], columns, "gps<=7")).toBe(false);
+    expect(meets(["P-1 · walk", null], columns, "gps<=7")).toBe(false);
+    expect(meets(["P-1 · walk", 7.5], columns, "speed>0")).toBe(false);
+  });
+
+  it("quotes what would break a csv file", () => {
+    expect([csvCell('a "b", c'), csvCell(1.5), csvCell(null)]).toEqual(['"a ""b"", c"', "1.5", ""]);
   });
 });

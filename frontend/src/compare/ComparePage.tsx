@@ -1,82 +1,71 @@
-import { useMemo, useState } from "react";
-import { Checkbox, Group, Stack, Table, Text, Title } from "@mantine/core";
-import { useQueries, useQuery } from "@tanstack/react-query";
+/** Before and after, or any number of patients, side by side. */
+import { useCallback, useMemo } from "react";
+import { Group, Stack, Text, Title } from "@mantine/core";
+import { useQuery } from "@tanstack/react-query";
 import { useLocation, useSearch } from "wouter";
-import { client, unwrap, type Schemas } from "../api/client";
+import { client, unwrap } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
-import { CyclePanel, type Line, type PanelData } from "../result/CyclePanel";
-import { Cursor } from "../result/cursor";
-import { SIDES, type ResultDocument } from "../result/document";
-import { KINEMATICS, KINETICS } from "../result/panels";
+import { Choice } from "./Choice";
+import { Cohorts } from "./Cohorts";
+import { FEW, letterOf, Overlays } from "./Overlays";
+import { useAnalysed, type Named } from "./results";
+import { ScatterPlot } from "./ScatterPlot";
 import { SortableTable } from "./SortableTable";
-
-/** Line styles of the sessions, in the order in which they were chosen. */
-const DASHES: (number[] | undefined)[] = [undefined, [8, 4], [2, 3], [10, 3, 2, 3]];
-const FEW = DASHES.length;
+import { WeightsPlot } from "./WeightsPlot";
+import { widen, type Quantity } from "./wide";
 
 export default function ComparePage() {
-  const { t } = useI18n();
+  const { t, date } = useI18n();
   const [, navigate] = useLocation();
   const search = new URLSearchParams(useSearch());
   const chosen = (search.get("results") ?? "").split(",").filter(Boolean);
+  const { named, error } = useAnalysed();
   const choose = (ids: readonly string[]) => navigate(`/compare?results=${ids.join(",")}`, { replace: true });
+  const labelOf = useCallback(
+    ({ result, pseudonym }: Named) => {
+      const trials = result.summary.trials as string[] | undefined;
+      const kind = result.kind === "predict" ? t("prediction") : (trials?.join(", ") ?? "");
+      return [pseudonym, date(result.created_at), kind].filter(Boolean).join(" · ");
+    },
+    [t, date],
+  );
+  const labels = useMemo(() => new Map(named?.map((each) => [each.result.id, labelOf(each)])), [named, labelOf]);
   return (
     <Stack>
       <Title order={1}>{t("compare")}</Title>
-      <Choice chosen={chosen} choose={choose} />
-      {chosen.length > 1 && <Tables ids={chosen} />}
-      {chosen.length > 1 && chosen.length <= FEW && <Overlays ids={chosen} />}
+      <ErrorNote error={error} />
+      {named && <Choice named={named} labelOf={labelOf} chosen={chosen} choose={choose} />}
+      <Cohorts chosen={chosen} choose={choose} />
+      {chosen.length > 1 && <Compared ids={chosen} labels={labels} />}
     </Stack>
   );
 }
 
-function labelOf(result: Schemas["Result"], date: (iso: string) => string): string {
-  const trials = result.summary.trials as string[] | undefined;
-  return `${date(result.created_at)} ${trials?.join(", ") ?? ""}`;
-}
-
-function Choice({ chosen, choose }: { chosen: readonly string[]; choose: (ids: readonly string[]) => void }) {
-  const { t, date } = useI18n();
-  const results = useQuery({
-    queryKey: ["results", "all"],
-    queryFn: () => unwrap(client.GET("/api/v1/results", { params: { query: { kind: "analyse", limit: 100 } } })),
-  });
-  const patients = useQuery({
-    queryKey: ["patients", "names"],
-    queryFn: () => unwrap(client.GET("/api/v1/patients", { params: { query: { limit: 100 } } })),
-  });
-  const pseudonyms = new Map(patients.data?.items.map((each) => [each.id, each.pseudonym]));
+function Compared({ ids, labels }: { ids: readonly string[]; labels: ReadonlyMap<string, string> }) {
+  const few = ids.length <= FEW;
+  const named = new Map(
+    ids.map((id, index) => [id, few ? `${letterOf(index)} · ${labels.get(id) ?? ""}` : (labels.get(id) ?? id)]),
+  );
   return (
-    <details open={chosen.length < 2}>
-      <summary>{t("chooseResults", { count: chosen.length })}</summary>
-      <ErrorNote error={results.error} />
-      <Table mt="xs">
-        <Table.Tbody>
-          {results.data?.items.map((result) => (
-            <Table.Tr key={result.id}>
-              <Table.Td>
-                <Checkbox
-                  label={`${pseudonyms.get(result.patient_id ?? "") ?? ""} · ${labelOf(result, date)}`}
-                  checked={chosen.includes(result.id)}
-                  onChange={() =>
-                    choose(
-                      chosen.includes(result.id) ? chosen.filter((id) => id !== result.id) : [...chosen, result.id],
-                    )
-                  }
-                />
-              </Table.Td>
-            </Table.Tr>
+    <>
+      {few && (
+        <Group gap="lg">
+          {[...named.values()].map((label) => (
+            <Text key={label} fw={600} size="sm">
+              {label}
+            </Text>
           ))}
-        </Table.Tbody>
-      </Table>
-      {results.data?.items.length === 0 && <Text c="dimmed">{t("noResults")}</Text>}
-    </details>
+        </Group>
+      )}
+      {few && <Overlays ids={ids} />}
+      <Tables ids={ids} labels={named} />
+    </>
   );
 }
 
-function Tables({ ids }: { ids: readonly string[] }) {
-  const { t } = useI18n();
+function Tables({ ids, labels }: { ids: readonly string[]; labels: ReadonlyMap<string, string> }) {
+  const { t, name } = useI18n();
   const comparison = useQuery({
     queryKey: ["comparison", ids],
     queryFn: () =>
@@ -85,84 +74,48 @@ function Tables({ ids }: { ids: readonly string[] }) {
           body: { members: ids.map((id) => ({ result_id: id, group: "" })), tables: ["quantities", "weights"] },
         }),
       ),
+    staleTime: Infinity,
   });
-  const names = new Map(ids.map((id, index) => [id, String.fromCharCode(65 + (index % 26)) + (index >= 26 ? index : "")]));
+  const nameOf = useCallback(
+    ({ name: quantity, side, isWeight }: Quantity) =>
+      [isWeight ? t("weightOf", { name: name(quantity) }) : name(quantity), side && name(side)].filter(Boolean).join(", "),
+    [t, name],
+  );
+  const wide = useMemo(() => comparison.data && widen(comparison.data.tables, ids), [comparison.data, ids]);
+  const columns = useMemo(
+    () => [
+      { key: "result", label: t("result") },
+      ...(wide?.quantities ?? []).map((each) => ({ key: each.key, label: nameOf(each) })),
+    ],
+    [wide, nameOf, t],
+  );
+  const rows = useMemo(
+    () =>
+      [...(wide?.values ?? [])].map(([id, values]) => [
+        labels.get(id) ?? id,
+        ...(wide?.quantities ?? []).map(({ key }) => values.get(key) ?? null),
+      ]),
+    [wide, labels],
+  );
+  if (!wide) return <ErrorNote error={comparison.error} />;
+  const weighted = wide.quantities.filter((each) => each.isWeight);
   return (
     <>
-      <ErrorNote error={comparison.error} />
       {comparison.data?.problems.map((problem) => (
         <Text key={problem} size="sm">
           {problem}
         </Text>
       ))}
-      <Group gap="xs">
-        {[...names].map(([id, letter]) => (
-          <Text key={id} size="sm">
-            <b>{letter}</b> {id.slice(0, 8)}
-          </Text>
-        ))}
-      </Group>
-      {Object.entries(comparison.data?.tables ?? {}).map(([title, table]) => (
-        <div key={title}>
-          <Title order={2}>{t(title === "weights" ? "weights" : "numbers")}</Title>
-          <SortableTable name={title} table={table} labels={names} />
-        </div>
-      ))}
+      <Title order={2}>{t("numbers")}</Title>
+      <SortableTable name={t("numbers")} columns={columns} rows={rows} />
+      {weighted.length > 0 && (
+        <>
+          <Title order={2}>{t("weights")}</Title>
+          <WeightsPlot quantities={weighted} wide={wide} labels={labels} />
+        </>
+      )}
+      <Title order={2}>{t("scatter")}</Title>
+      <ScatterPlot wide={wide} labels={labels} nameOf={nameOf} />
     </>
   );
-}
-
-function Overlays({ ids }: { ids: readonly string[] }) {
-  const { t } = useI18n();
-  const cursor = useMemo(() => new Cursor(), []);
-  const [kinetics, setKinetics] = useState(false);
-  const documents = useQueries({
-    queries: ids.map((id) => ({
-      queryKey: ["document", id],
-      queryFn: () =>
-        unwrap(client.GET("/api/v1/results/{result_id}/document", { params: { path: { result_id: id } } })).then(
-          (told) => told as unknown as ResultDocument,
-        ),
-      staleTime: Infinity,
-    })),
-    combine: (all) => all.flatMap(({ data }) => (data ? [data] : [])),
-  });
-  const panels = useMemo(() => {
-    const layouts = kinetics ? KINETICS : KINEMATICS;
-    return layouts.map((layout) => layout && { layout, data: overlay(layout.name, documents, t("left"), t("right")) });
-  }, [documents, kinetics, t]);
-  if (documents.length < ids.length) return null;
-  return (
-    <>
-      <Group justify="space-between">
-        <Title order={2}>{t("curves")}</Title>
-        <Checkbox label={t("kinetics")} checked={kinetics} onChange={(event) => setKinetics(event.currentTarget.checked)} />
-      </Group>
-      <Text size="sm">{t("overlayLegend")}</Text>
-      <div className="panels">
-        {panels.map((panel, index) =>
-          panel ? (
-            <CyclePanel key={panel.layout.name} layout={panel.layout} data={panel.data} cursor={cursor} />
-          ) : (
-            <div key={index} />
-          ),
-        )}
-      </div>
-    </>
-  );
-}
-
-/** One curve of several sessions: colour is side, line style is session. */
-function overlay(name: string, documents: readonly ResultDocument[], left: string, right: string): PanelData {
-  const words = { left, right };
-  const lines = documents.flatMap((document, index) =>
-    SIDES.flatMap((side): Line[] => {
-      const curve = (document.kinematics[name] ?? document.kinetics?.curves[name])?.[side];
-      const dash = DASHES[index];
-      const label = `${String.fromCharCode(65 + index)} ${words[side]}`;
-      return curve ? [{ side, mean: curve.mean, label, ...(dash ? { dash } : {}) }] : [];
-    }),
-  );
-  const reference = documents[0]?.scores?.reference;
-  return { lines, norm: reference?.curves[name] ?? reference?.kinetics?.[name], footOff: {} };
 }

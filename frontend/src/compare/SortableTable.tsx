@@ -1,60 +1,68 @@
-import { useMemo, useState } from "react";
+/** Rows of cells: sorted by any column, filtered by words and by numbers, saved as csv. */
+import { useDeferredValue, useMemo, useState } from "react";
 import { Button, Group, ScrollArea, Table, TextInput, UnstyledButton } from "@mantine/core";
 import { useI18n } from "../i18n/I18n";
-import type { Schemas } from "../api/client";
 import { compareCells, type Cell } from "./compareCells";
+import { meets } from "./filters";
+import { csvCell } from "./wide";
 
-type Told = Schemas["ComparisonTable"];
+export interface Column {
+  key: string;
+  label: string;
+}
 
 interface Props {
+  /** Of the csv file, and for those who hear the page. */
   name: string;
-  table: Told;
-  /** Short names of results. */
-  labels: ReadonlyMap<string, string>;
+  columns: readonly Column[];
+  rows: readonly (readonly Cell[])[];
 }
 
 /** Rows that are drawn at a time, so that no drawing takes long. */
-const STEP = 60;
+const STEP = 40;
 
-export function SortableTable({ name, table, labels }: Props) {
-  const { t, name: words, number } = useI18n();
-  const [filter, setFilter] = useState("");
+export function SortableTable({ name, columns, rows }: Props) {
+  const { t, number } = useI18n();
+  const [typed, setTyped] = useState("");
+  const filter = useDeferredValue(typed);
   const [sort, setSort] = useState<{ column: number; down: boolean } | null>(null);
   const [shown, setShown] = useState(STEP);
-  const rows = useMemo(() => {
-    const text = (cell: Cell) => (typeof cell === "string" ? (labels.get(cell) ?? words(cell)) : cell);
-    const named = table.rows.map((row) => row.map(text));
-    const wanted = named.filter((row) => row.some((cell) => String(cell).toLowerCase().includes(filter.toLowerCase())));
+  const keys = useMemo(() => columns.map((each) => each.key), [columns]);
+  const sorted = useMemo(() => {
+    const wanted = rows.filter((row) => meets(row, keys, filter));
     if (!sort) return wanted;
     const sign = sort.down ? -1 : 1;
-    return wanted.sort((a, b) => sign * compareCells(a[sort.column] ?? null, b[sort.column] ?? null));
-  }, [table, labels, words, filter, sort]);
-  const csv = [table.columns, ...rows].map((row) => row.map((cell) => cell ?? "").join(",")).join("\n");
+    return wanted.sort((a, b) => compareCells(a[sort.column] ?? null, b[sort.column] ?? null, sign));
+  }, [rows, keys, filter, sort]);
+  const save = () => {
+    const lines = [columns.map((each) => each.label), ...sorted].map((row) => row.map(csvCell).join(","));
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([lines.join("\n")], { type: "text/csv" }));
+    link.download = `${name}.csv`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  };
   return (
     <>
-      <Group className="no-print">
+      <Group className="no-print" align="end">
         <TextInput
-          aria-label={t("filter")}
-          placeholder={t("filter")}
-          value={filter}
-          onChange={(event) => setFilter(event.currentTarget.value)}
+          label={t("filter")}
+          description={t("filterHint")}
+          w={360}
+          value={typed}
+          onChange={(event) => setTyped(event.currentTarget.value)}
         />
-        <Button
-          component="a"
-          variant="default"
-          download={`${name}.csv`}
-          href={`data:text/csv;charset=utf-8,${encodeURIComponent(csv)}`}
-        >
+        <Button variant="default" onClick={save}>
           csv
         </Button>
       </Group>
-      <ScrollArea.Autosize mah={460} viewportProps={{ tabIndex: 0, role: "region", "aria-label": words(name) }}>
+      <ScrollArea.Autosize mah={520} viewportProps={{ tabIndex: 0, role: "region", "aria-label": name }}>
         <Table stickyHeader striped>
           <Table.Thead>
             <Table.Tr>
-              {table.columns.map((column, index) => (
+              {columns.map((column, index) => (
                 <Table.Th
-                  key={column}
+                  key={column.key}
                   aria-sort={sort?.column === index ? (sort.down ? "descending" : "ascending") : "none"}
                 >
                   <UnstyledButton
@@ -62,25 +70,25 @@ export function SortableTable({ name, table, labels }: Props) {
                     fz="sm"
                     onClick={() => setSort({ column: index, down: sort?.column === index && !sort.down })}
                   >
-                    {words(column)} {sort?.column === index ? (sort.down ? "▼" : "▲") : ""}
+                    {column.label} {sort?.column === index ? (sort.down ? "▼" : "▲") : ""}
                   </UnstyledButton>
                 </Table.Th>
               ))}
             </Table.Tr>
           </Table.Thead>
           <Table.Tbody>
-            {rows.slice(0, shown).map((row, index) => (
+            {sorted.slice(0, shown).map((row, index) => (
               <Table.Tr key={index}>
                 {row.map((cell, column) => (
-                  <Table.Td key={column}>{typeof cell === "number" ? number(cell, 3) : String(cell ?? "–")}</Table.Td>
+                  <Table.Td key={column}>{typeof cell === "number" ? number(cell, 2) : String(cell ?? "–")}</Table.Td>
                 ))}
               </Table.Tr>
             ))}
           </Table.Tbody>
         </Table>
-        {rows.length > shown && (
+        {sorted.length > shown && (
           <Button variant="subtle" onClick={() => setShown(shown + STEP)}>
-            {t("showMore", { count: rows.length - shown })}
+            {t("showMore", { count: sorted.length - shown })}
           </Button>
         )}
       </ScrollArea.Autosize>

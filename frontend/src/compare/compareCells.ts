@@ -1,10 +1,11 @@
-/** Order of cells of a comparison; unknown ones last. */
+/** Order of cells of a comparison. */
 import type { Schemas } from "../api/client";
 
 export type Cell = Schemas["ComparisonTable"]["rows"][number][number];
 
-export function compareCells(a: Cell, b: Cell): number {
+/** Before (negative) or after; `sign` turns the order, but unknown cells come last either way. */
+export function compareCells(a: Cell, b: Cell, sign = 1): number {
   if (a === null || b === null) return Number(a === null) - Number(b === null);
-  if (typeof a === "number" && typeof b === "number") return a - b;
-  return String(a).localeCompare(String(b));
+  if (typeof a === "number" && typeof b === "number") return sign * (a - b);
+  return sign * String(a).localeCompare(String(b));
 }

@@ -11,20 +11,9 @@ import { Cursor } from "./cursor";
 import type { ResultDocument } from "./document";
 import { NumbersTab } from "./NumbersTab";
 import { ReportTab } from "./ReportTab";
+import { useResultDocument } from "./useResultDocument";
 import { isVideo } from "./VideoPane";
 import { WeightsTab } from "./WeightsTab";
-
-/** The document of a result; it never changes. */
-export function useResultDocument(id: string) {
-  return useQuery({
-    queryKey: ["document", id],
-    queryFn: () =>
-      unwrap(client.GET("/api/v1/results/{result_id}/document", { params: { path: { result_id: id } } })).then(
-        (told) => told as unknown as ResultDocument,
-      ),
-    staleTime: Infinity,
-  });
-}
 
 export default function ResultPage({ id }: { id: string }) {
   const { t } = useI18n();
