@@ -26,6 +26,7 @@ import issue4_prediction  # noqa: F401 - registers its measurements
 import issue5_comparison  # noqa: F401 - registers its measurements
 import issue5_kinetics  # noqa: F401 - registers its measurements
 import issue5_report  # noqa: F401 - registers its measurements
+import issue6_jobs  # noqa: F401 - registers its measurements
 import issue6_service  # noqa: F401 - registers its measurements
 import issue6_uploads  # noqa: F401 - registers its measurements
 import issue6_web  # noqa: F401 - registers its measurements
