@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-warn-script-location -c constraints.txt
 DEMO_OUT ?= out/demo
+DEMO_CLINIC ?= out/demo-clinic
 
 # Linear solvers repeat bit for bit only with one thread (design/numerics.md, finding 5).
 export OMP_NUM_THREADS := 1
@@ -15,8 +16,9 @@ export OPENBLAS_NUM_THREADS := 1
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  make \1\t\2/' | expand -t 22
 
-demo: $(VENV)/.installed ## install, analyse the demo recordings, print the weights and the report's path
+demo: $(VENV)/.installed ## install, analyse the demo recordings, then serve the web application with them in it
 	$(BIN)/gaitlab demo --out $(DEMO_OUT)
+	$(BIN)/gaitlab demo-clinic --results $(DEMO_OUT) --data-dir $(DEMO_CLINIC)
 
 test: $(VENV)/.installed-dev ## all tests but the slow ones, on two cores
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
@@ -60,7 +62,7 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
-	$(INSTALL) -e .
+	$(INSTALL) -e '.[server]'
 	touch $@
 
 $(VENV)/.installed-dev: pyproject.toml constraints.txt | $(BIN)/python

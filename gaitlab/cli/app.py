@@ -9,7 +9,7 @@ from .. import __version__
 from .analyse import analyse
 from .benchmark import benchmark
 from .compare import compare_results
-from .demo import demo
+from .demo import demo, demo_clinic
 from .demo_data import demo_data
 from .ending import run_app
 from .export import export_results
@@ -31,6 +31,7 @@ app = typer.Typer(
 )
 for command in (analyse, inspect, view, schema, demo, *SERVER_COMMANDS, openapi):
     app.command()(command)
+app.command(name="demo-clinic")(demo_clinic)
 app.command(name="demo-data")(demo_data)
 app.command(name="compare")(compare_results)
 app.command()(predict)

@@ -9,6 +9,7 @@ from ..pipelines.analyse import Sources
 from ..pipelines.bundled import DEMO_CHILDREN, demo_folder
 from ..pipelines.options import AnalysisOptions
 from .analyse import run_analysis
+from .server_extra import load
 
 
 def demo(
@@ -20,3 +21,15 @@ def demo(
     folder = demo_folder(child)
     sources = Sources(static=folder / "static.c3d", walks=(folder / "walk1.c3d", folder / "walk2.c3d"))
     run_analysis(sources, AnalysisOptions(weights=weights), out)
+
+
+def demo_clinic(
+    results: Annotated[Path, typer.Option(help="Folder that gaitlab demo wrote.")] = Path("gaitlab-demo"),
+    data_dir: Annotated[Path, typer.Option(help="Folder of database and files; made if absent.")] = Path(
+        "gaitlab-clinic"
+    ),
+    child: Annotated[str, typer.Option(help="Whose results they are.")] = DEMO_CHILDREN[0],
+    port: Annotated[int, typer.Option(help="Port on 127.0.0.1; 0 for any.", min=0, max=65535)] = 0,
+) -> None:
+    """Run the web application with the demo patients in it: until Ctrl+C, or in the background without a terminal."""
+    load("demo_serving").serve_demo(data_dir, child, results, port)
