@@ -32,6 +32,8 @@ def serve_demo(data_dir: Path, child: str, results: Path, port: int) -> None:
     Raises:
         OutputError: There is no result, or the server does not start.
     """
+    # PostgreSQL's own programs run in another folder.
+    data_dir = data_dir.resolve()
     settings = settings_of({"data_dir": data_dir, "host": "127.0.0.1", "port": port, "log_format": "text"})
     address = _running_at(data_dir)
     if address:

@@ -3,6 +3,7 @@
 import io
 import json
 import re
+import time
 import zipfile
 
 import numpy as np
@@ -67,6 +68,14 @@ def scene(chromium, clinic, weighted):
         yield page
 
 
+def until(condition, page):
+    """Wait for it; playwright's own way would evaluate text in the page, which its policy forbids."""
+    deadline = time.monotonic() + SCENE_MS / 1000
+    while not condition():
+        assert time.monotonic() < deadline
+        page.wait_for_timeout(100)
+
+
 def frame_of(page):
     return int(page.get_by_test_id("frame").get_attribute("data-frame"))
 
@@ -77,7 +86,7 @@ def test_the_3d_frame_follows_the_cursor_and_is_drawn(scene):
     scene.wait_for_timeout(500)
     early = frame_of(scene)
     over.hover(position={"x": 200, "y": 40})
-    scene.wait_for_function(f"document.querySelector('[data-frame]').dataset.frame > {early + 10}")
+    until(lambda: frame_of(scene) > early + 10, scene)
     picture = imread(io.BytesIO(scene.locator("iframe").screenshot()))[..., :3]
     # Neither black nor empty: bones of the left leg are red, the model's orange.
     red = (picture[..., 0] > 0.6) & (picture[..., 1] < 0.35) & (picture[..., 2] < 0.35)
@@ -89,11 +98,9 @@ def test_playing_moves_the_cursor_of_the_curves(scene):
     # Not by the mouse: the software renderer keeps the page too busy for playwright's patience.
     scene.get_by_role("button", name="Play").dispatch_event("click")
     readout = scene.get_by_test_id("readout-knee_flexion")
-    scene.wait_for_function("document.querySelector('[data-testid=readout-knee_flexion]').textContent !== ''")
+    until(lambda: readout.inner_text() != "", scene)
     first = readout.inner_text()
-    scene.wait_for_function(
-        f"![{json.dumps(first)}, ''].includes(document.querySelector('[data-testid=readout-knee_flexion]').textContent)"
-    )
+    until(lambda: readout.inner_text() not in ("", first), scene)
     scene.get_by_role("button", name="Pause").dispatch_event("click")
 
 

@@ -3,9 +3,9 @@
 const FRAMES_PER_SECOND = 30;
 const KINDS = ["video/mp4", "video/webm"];
 
-/** The canvas that the scene is drawn on; null while the page is not there yet. */
+/** The canvas that three.js draws on, as it marks it itself; null while the page is not there yet. */
 function canvasOf(frame: HTMLIFrameElement | null): HTMLCanvasElement | null {
-  return frame?.contentDocument?.querySelector("canvas") ?? null;
+  return frame?.contentDocument?.querySelector<HTMLCanvasElement>("canvas[data-engine]") ?? null;
 }
 
 function save(content: Blob, name: string): void {
