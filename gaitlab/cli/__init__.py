@@ -8,7 +8,7 @@ import sys
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-SERVER = ("serve", "worker", "doctor", "backup", "restore", "key")
+SERVER = ("serve", "worker", "doctor", "backup", "restore", "retention", "export-patient", "key")
 """Commands that start without loading what computes."""
 
 

@@ -4,7 +4,7 @@ import json
 import subprocess
 import sys
 
-HEAVY = ("casadi", "ezc3d", "matplotlib", "pinocchio", "pandas", "scipy", "typst", "viser")
+HEAVY = ("casadi", "ezc3d", "joserfc", "matplotlib", "pinocchio", "pandas", "scipy", "typst", "viser")
 SCRIPT = "import json, sys, gaitlab.cli.web_process; print(json.dumps(sorted(sys.modules)))"
 
 

@@ -5,10 +5,11 @@ import pytest
 
 import gaitlab as package
 from gaitlab.cli.app import app
+from gaitlab.cli.serve import SERVER_COMMANDS
 
 README = Path(__file__).parents[2] / "README.md"
 COMMANDS = (
-    "analyse", "backup", "compare", "demo", "demo-data", "doctor", "export", "export-patient", "inspect", "key",
+    "analyse", "backup", "compare", "demo", "demo-clinic", "demo-data", "doctor", "export", "export-patient", "inspect", "key",
     "openapi", "predict", "restore", "retention", "schema", "serve", "view", "worker",
 )  # fmt: skip
 
@@ -38,6 +39,10 @@ def test_every_command_is_in_the_readme(command):
 def test_no_command_is_forgotten_here():
     names = {info.name or info.callback.__name__.replace("_", "-") for info in app.registered_commands}
     assert names == set(COMMANDS)
+
+
+def test_the_commands_of_the_server_are_known_before_they_are_loaded():
+    assert {command.__name__.replace("_", "-") for command in SERVER_COMMANDS} == set(package.cli.SERVER)
 
 
 def test_schema_is_json_and_names_the_parts_of_the_contract(gaitlab):
