@@ -9,8 +9,8 @@ from gaitlab.cli.serve import SERVER_COMMANDS
 
 README = Path(__file__).parents[2] / "README.md"
 COMMANDS = (
-    "analyse", "backup", "compare", "demo", "demo-clinic", "demo-data", "doctor", "export", "export-patient", "inspect", "key",
-    "openapi", "predict", "restore", "retention", "schema", "serve", "view", "worker",
+    "analyse", "backup", "compare", "demo", "demo-clinic", "demo-data", "doctor", "export", "export-patient",
+    "inspect", "key", "openapi", "predict", "restore", "retention", "schema", "serve", "view", "worker",
 )  # fmt: skip
 
 
