@@ -5,6 +5,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { renderSVG } from "uqr";
 import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
+import { Preferences } from "../app/Preferences";
 import { submitting } from "../app/submitting";
 import { useI18n } from "../i18n/I18n";
 import { ACCOUNT_KEY, useAccount } from "./Account";
@@ -19,6 +20,7 @@ export default function AccountPage() {
       <Text c="dimmed">
         {session.user.login} · {t(`role_${session.user.role}`)}
       </Text>
+      <Preferences />
       {session.user.password && <Password />}
       {session.user.password && <SecondFactor on={session.user.second_factor} />}
       {!session.user.password && <Text>{t("noOwnPassword")}</Text>}

@@ -9,7 +9,7 @@ import { useI18n } from "../i18n/I18n";
 const PER_PAGE = 50;
 
 export function AuditLog() {
-  const { t } = useI18n();
+  const { t, moment } = useI18n();
   const [action, setAction] = useState("");
   const [kind, setKind] = useState("");
   const [page, setPage] = useState(1);
@@ -40,7 +40,7 @@ export function AuditLog() {
         <Table.Tbody>
           {lines.data?.items.map((line) => (
             <Table.Tr key={line.id}>
-              <Table.Td>{new Date(line.at).toLocaleString()}</Table.Td>
+              <Table.Td>{moment(line.at)}</Table.Td>
               <Table.Td>{line.login}</Table.Td>
               <Table.Td>{line.action}</Table.Td>
               <Table.Td>

@@ -1,8 +1,9 @@
-import { Badge, createTheme, MantineProvider, Modal } from "@mantine/core";
+import { useMemo, type ReactNode } from "react";
+import { Badge, createTheme, MantineProvider, mergeThemeOverrides, Modal, NumberInput } from "@mantine/core";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import { Problem } from "../api/client";
 import { SessionProvider } from "../account/Account";
-import { I18nProvider } from "../i18n/I18n";
+import { I18nProvider, useI18n } from "../i18n/I18n";
 import { Pages } from "./Pages";
 
 const theme = createTheme({
@@ -30,14 +31,28 @@ const queries = new QueryClient({
 
 export function App() {
   return (
-    <MantineProvider theme={theme} defaultColorScheme="auto">
-      <I18nProvider>
+    <I18nProvider>
+      <Themed>
         <QueryClientProvider client={queries}>
           <SessionProvider>
             <Pages />
           </SessionProvider>
         </QueryClientProvider>
-      </I18nProvider>
+      </Themed>
+    </I18nProvider>
+  );
+}
+
+/** The theme with the language's way to write numbers. */
+function Themed({ children }: { children: ReactNode }) {
+  const { language } = useI18n();
+  const themed = useMemo(() => {
+    const defaultProps = { decimalSeparator: language === "de" ? "," : ".", allowedDecimalSeparators: [",", "."] };
+    return mergeThemeOverrides(theme, { components: { NumberInput: NumberInput.extend({ defaultProps }) } });
+  }, [language]);
+  return (
+    <MantineProvider theme={themed} defaultColorScheme="auto">
+      {children}
     </MantineProvider>
   );
 }

@@ -1,5 +1,5 @@
 import type { MouseEvent, ReactNode } from "react";
-import { Anchor, AppShell, Button, Group, Text } from "@mantine/core";
+import { Anchor, AppShell, Box, Button, Group, Text } from "@mantine/core";
 import { Link, useLocation } from "wouter";
 import { useAccount } from "../account/Account";
 import { useI18n, type Key } from "../i18n/I18n";
@@ -49,7 +49,9 @@ export function Shell({ children }: { children: ReactNode }) {
             ))}
           </Group>
           <Group gap="sm" wrap="nowrap">
-            <Preferences />
+            <Box visibleFrom="md">
+              <Preferences />
+            </Box>
             <Anchor component={Link} href="/account" size="sm" visibleFrom="sm" c="var(--mantine-color-text)">
               {session?.user.display_name || session?.user.login}
             </Anchor>

@@ -41,7 +41,7 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
       legend: { show: false },
       cursor: { drag: { x: false, y: false } },
       axes: [
-        { ...axis, label: title(across) },
+        { ...axis, label: title(across), space: 80 },
         { ...axis, label: title(up), size: 60 },
       ],
       series: [{}, { stroke: colours.right, paths: () => null, points: { show: true, size: 9, fill: colours.right } }],
@@ -50,9 +50,12 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
           (chart) => {
             chart.ctx.fillStyle = colours.text;
             chart.ctx.font = `${11 * devicePixelRatio}px system-ui`;
+            const middle = chart.bbox.left + chart.bbox.width / 2;
             // More names than this would hide each other.
             for (const { label, x, y } of points.length <= 30 ? points : []) {
-              chart.ctx.fillText(label, chart.valToPos(x, "x", true) + 8, chart.valToPos(y, "y", true) - 6);
+              const [left, top] = [chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)];
+              chart.ctx.textAlign = left < middle ? "left" : "right";
+              chart.ctx.fillText(label, left + (left < middle ? 10 : -10), top - 6);
             }
           },
         ],

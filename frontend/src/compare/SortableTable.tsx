@@ -57,7 +57,7 @@ export function SortableTable({ name, columns, rows }: Props) {
         </Button>
       </Group>
       <ScrollArea.Autosize mah={520} viewportProps={{ tabIndex: 0, role: "region", "aria-label": name }}>
-        <Table stickyHeader striped>
+        <Table stickyHeader className="first-column">
           <Table.Thead>
             <Table.Tr>
               {columns.map((column, index) => (

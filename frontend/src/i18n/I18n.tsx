@@ -14,6 +14,7 @@ interface I18n {
   t: Translate;
   number: (value: number | null | undefined, digits?: number) => string;
   date: (iso: string) => string;
+  moment: (iso: string) => string;
   /** Words for a name of the API such as "hip_flexion"; the name itself, in words, where there are none. */
   name: (apiName: string) => string;
 }
@@ -40,7 +41,9 @@ function make(language: Language, setLanguage: (language: Language) => void): I1
         ? "–"
         : value.toLocaleString(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits }),
     date: (iso) => new Date(iso).toLocaleDateString(locale, { day: "2-digit", month: "short", year: "numeric" }),
+    moment: (iso) => new Date(iso).toLocaleString(locale, { dateStyle: "medium", timeStyle: "medium" }),
     name: (apiName) => {
+      if (apiName.startsWith("gvs_")) return `GVS ${words[`n_${apiName.slice(4)}` as Key] ?? apiName}`;
       const known = words[`n_${apiName}` as Key] as string | undefined;
       const plain = apiName.replaceAll("_", " ");
       return known ?? plain.charAt(0).toUpperCase() + plain.slice(1);

@@ -1,4 +1,4 @@
-import { Alert, Badge, Button, Code, Group, Paper, Progress, Text } from "@mantine/core";
+import { Alert, Badge, Button, Code, Group, NativeSelect, Paper, Progress, Text } from "@mantine/core";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { Link } from "wouter";
 import { useAccount } from "../account/Account";
@@ -18,7 +18,7 @@ const COLOURS: Record<Job["status"], string> = {
 };
 
 export function JobCard({ job: given }: { job: Job }) {
-  const { t, name } = useI18n();
+  const { t, name, moment } = useI18n();
   const { job, history } = useJob(given);
   return (
     <Paper withBorder p="md" data-testid="job">
@@ -29,7 +29,7 @@ export function JobCard({ job: given }: { job: Job }) {
           </Badge>
           <Text fw={600}>{t(`kind_${job.kind}` as Key)}</Text>
           <Text c="dimmed" size="sm">
-            {new Date(job.created_at).toLocaleString()}
+            {moment(job.created_at)}
           </Text>
         </Group>
         <Actions job={job} />
@@ -91,10 +91,27 @@ function Actions({ job }: { job: Job }) {
     mutationFn: () => unwrap(client.POST("/api/v1/analyses/{analysis_id}/retry", { params })),
     onSettled: refresh,
   });
+  const hurry = useMutation({
+    mutationFn: (priority: number) =>
+      unwrap(client.PUT("/api/v1/analyses/{analysis_id}/priority", { params, body: { priority } })),
+    onSettled: refresh,
+  });
   const canRetry = job.status === "failed" || job.status === "cancelled";
   return (
     <Group gap="xs">
-      <ErrorNote error={cancel.error ?? retry.error} />
+      <ErrorNote error={cancel.error ?? retry.error ?? hurry.error} />
+      {may("system:read") && job.status === "queued" && (
+        <NativeSelect
+          size="xs"
+          aria-label={t("priority")}
+          value={String(job.priority)}
+          onChange={(event) => hurry.mutate(Number(event.currentTarget.value))}
+          data={[...new Set([10, 5, 0, -5, -10, job.priority])].map((value) => ({
+            value: String(value),
+            label: t("priorityOf", { value }),
+          }))}
+        />
+      )}
       {may("analyses:run") && !isOver(job) && (
         <Button
           size="xs"

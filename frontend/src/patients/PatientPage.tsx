@@ -8,6 +8,7 @@ import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { NewVisitForm } from "./NewVisitForm";
+import { usePatient } from "./usePatient";
 
 type Result = Schemas["Result"];
 
@@ -18,10 +19,7 @@ export function PatientPage({ id }: { id: string }) {
   const [adding, form] = useDisclosure();
   const [chosen, setChosen] = useState<readonly string[]>([]);
   const path = { patient_id: id };
-  const patient = useQuery({
-    queryKey: ["patient", id],
-    queryFn: () => unwrap(client.GET("/api/v1/patients/{patient_id}", { params: { path } })),
-  });
+  const patient = usePatient(id);
   const visits = useQuery({
     queryKey: ["visits", id],
     queryFn: () => unwrap(client.GET("/api/v1/patients/{patient_id}/sessions", { params: { path, query: { limit: 100 } } })),

@@ -126,6 +126,12 @@ function panelSource(document: ResultDocument, cycles: Cycles | null, t: Sided):
     left: document.spatiotemporal.left?.mean.foot_off_percent ?? null,
     right: document.spatiotemporal.right?.mean.foot_off_percent ?? null,
   };
+  const opposite = Object.fromEntries(
+    SIDES.map((side) => {
+      const mean = document.spatiotemporal[side]?.mean;
+      return [side, [mean?.opposite_foot_off_percent ?? null, mean?.opposite_foot_strike_percent ?? null]];
+    }),
+  );
   const made = new Map<string, PanelData>();
   return (name) => {
     const known = made.get(name);
@@ -136,7 +142,7 @@ function panelSource(document: ResultDocument, cycles: Cycles | null, t: Sided):
       const curve = curves[name]?.[side];
       return curve ? [{ side, mean: curve.mean, sd: curve.sd, label: t(side) }] : [];
     });
-    const data: PanelData = { lines, norm: norms[name], footOff };
+    const data: PanelData = { lines, norm: norms[name], footOff, opposite };
     made.set(name, data);
     return data;
   };

@@ -9,6 +9,7 @@ import { SIDES, type Band, type Side, type Values } from "./document";
 import type { PanelLayout } from "./panels";
 
 const HEIGHT = 170;
+const TICK = 8;
 /** Per cent of the cycle that a key moves the cursor by. */
 const STEPS: Readonly<Record<string, number>> = { ArrowLeft: -1, ArrowRight: 1, PageDown: -10, PageUp: 10, Home: -100, End: 100 };
 
@@ -28,6 +29,8 @@ export interface PanelData {
   norm?: Band | undefined;
   /** Per cent of the cycle at which each foot leaves the floor. */
   footOff: Readonly<Partial<Record<Side, number | null>>>;
+  /** Per cent at which the opposite foot leaves the floor and comes down. */
+  opposite?: Readonly<Partial<Record<Side, readonly (number | null)[]>>>;
 }
 
 interface Props {
@@ -75,7 +78,7 @@ function build({ lines, norm }: PanelData, colours: Colours) {
   return { series, bands, data: [PERCENT, ...rows] as uPlot.AlignedData };
 }
 
-function drawMarks(chart: uPlot, footOff: PanelData["footOff"], colours: Colours): void {
+function drawMarks(chart: uPlot, { footOff, opposite }: PanelData, colours: Colours): void {
   const { ctx, bbox } = chart;
   ctx.save();
   ctx.lineWidth = devicePixelRatio;
@@ -90,14 +93,17 @@ function drawMarks(chart: uPlot, footOff: PanelData["footOff"], colours: Colours
   ctx.stroke();
   ctx.globalAlpha = 1;
   for (const side of SIDES) {
-    const percent = footOff[side];
-    if (percent == null) continue;
-    const x = chart.valToPos(percent, "x", true);
     ctx.strokeStyle = colours[side];
-    ctx.beginPath();
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
+    const line = (percent: number | null | undefined, length: number) => {
+      if (percent == null) return;
+      const x = chart.valToPos(percent, "x", true);
+      ctx.beginPath();
+      ctx.moveTo(x, bbox.top);
+      ctx.lineTo(x, bbox.top + length);
+      ctx.stroke();
+    };
+    line(footOff[side], bbox.height);
+    for (const percent of opposite?.[side] ?? []) line(percent, TICK * devicePixelRatio);
   }
   ctx.restore();
 }
@@ -144,7 +150,7 @@ export function CyclePanel({ layout, data, cursor, onPick }: Props) {
         series: built.series,
         bands: built.bands,
         hooks: {
-          draw: [(drawn) => drawMarks(drawn, data.footOff, colours)],
+          draw: [(drawn) => drawMarks(drawn, data, colours)],
           setCursor: [
             (moved) => {
               const { left } = moved.cursor;
@@ -164,7 +170,7 @@ export function CyclePanel({ layout, data, cursor, onPick }: Props) {
       leave();
       chart.destroy();
     };
-  }, [built, colours, cursor, data.footOff, layout]);
+  }, [built, colours, cursor, data, layout]);
 
   useEffect(() => {
     const marked = data.lines.filter((line) => !line.faint);

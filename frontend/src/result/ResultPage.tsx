@@ -1,10 +1,11 @@
 import { useMemo } from "react";
-import { Alert, Anchor, Badge, Group, List, Stack, Tabs, Text, Title } from "@mantine/core";
+import { Alert, Anchor, Badge, Breadcrumbs, Group, List, Stack, Tabs, Text, Title } from "@mantine/core";
 import { useQuery } from "@tanstack/react-query";
 import { Link } from "wouter";
 import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
+import { usePatient } from "../patients/usePatient";
 import { useAttachments } from "../visit/Attachments";
 import { CurvesTab } from "./CurvesTab";
 import { Cursor } from "./cursor";
@@ -55,16 +56,26 @@ export default function ResultPage({ id }: { id: string }) {
 
 function Heading({ result, document }: { result: Schemas["ResultWithFiles"]; document: ResultDocument }) {
   const { t, date } = useI18n();
+  const patient = usePatient(result.patient_id);
   const walks = document.inputs.filter((input) => input.role === "walk").map((input) => input.name);
   return (
     <>
-      {result.session_id && (
-        <Anchor component={Link} href={`/visits/${result.session_id}`}>
-          {t("visit")}
-        </Anchor>
-      )}
+      <Breadcrumbs>
+        {patient.data && (
+          <Anchor component={Link} href={`/patients/${patient.data.id}`}>
+            {patient.data.pseudonym}
+          </Anchor>
+        )}
+        {result.session_id && (
+          <Anchor component={Link} href={`/visits/${result.session_id}`}>
+            {t("visit")}
+          </Anchor>
+        )}
+      </Breadcrumbs>
       <Group>
-        <Title order={1}>{t(document.prediction ? "prediction" : "result")}</Title>
+        <Title order={1}>
+          {t(document.prediction ? "prediction" : "result")} {patient.data?.pseudonym}
+        </Title>
         {!result.converged && <Badge color="orange">{t("notConverged")}</Badge>}
       </Group>
       <Text c="dimmed">

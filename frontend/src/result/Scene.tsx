@@ -28,6 +28,8 @@ const LAYERS = [
   "floor",
 ] as const;
 const VIEWS = ["sagittal", "frontal", "oblique"] as const;
+/** As in style.css: viser gives narrow pages a panel over half the scene. */
+const ENLARGED = 1.5;
 const SPEEDS = ["0.1", "0.25", "0.5", "1"];
 
 export function Scene(props: SceneProps) {
@@ -39,12 +41,9 @@ export function Scene(props: SceneProps) {
   const { state, order } = useScene(props, side);
   return (
     <Stack gap="xs">
-      <iframe
-        ref={frame}
-        className="view-frame"
-        title={t("scene3d")}
-        src={scheme === "dark" ? `${viewer.url}?darkMode` : viewer.url}
-      />
+      <div className="view-place">
+        <iframe ref={frame} className="view-frame" title={t("scene3d")} src={addressOf(viewer.url, scheme)} />
+      </div>
       <Playback state={state} order={order} />
       <Group gap="xs">
         {VIEWS.map((view) => (
@@ -119,6 +118,13 @@ function Layers({ order }: { order: Order }) {
       </Group>
     </Chip.Group>
   );
+}
+
+/** viser's page as this page wants it: as dark, and with as many pixels although it is drawn larger and scaled down. */
+function addressOf(url: string, scheme: string): string {
+  const wishes = new URLSearchParams({ fixedDpr: String(devicePixelRatio / ENLARGED) });
+  if (scheme === "dark") wishes.set("darkMode", "");
+  return `${url}?${wishes}`;
 }
 
 interface CaptureProps {

@@ -37,7 +37,7 @@ export function ShareChart({ shares }: { shares: Shares }) {
       scales: { x: { time: false, range: [0, 100] }, y: { range: [0, 100] } },
       legend: { show: false },
       cursor: { show: false },
-      axes: [{ ...axis, label: t("percentOfCycle"), labelSize: 20 }, axis],
+      axes: [{ ...axis, space: 60, label: t("percentOfCycle"), labelSize: 20 }, axis],
       series: [{}, ...edges],
       bands: shares.rows.slice(1).map((_, index) => ({ series: [index + 2, index + 1], fill: `${colourOf(index + 1)}cc` })),
     };

@@ -7,6 +7,7 @@ import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { JobCard } from "../jobs/JobCard";
+import { usePatient } from "../patients/usePatient";
 import { Attachments } from "./Attachments";
 import { BodyParameters } from "./BodyParameters";
 import type { Corrections } from "./events";
@@ -37,13 +38,14 @@ export default function VisitPage({ id }: { id: string }) {
     queryFn: () =>
       unwrap(client.GET("/api/v1/analyses", { params: { query: { session_id: id, kind: "analyse", limit: 20 } } })),
   });
+  const patient = usePatient(visit.data?.patient_id ?? null);
   if (!visit.data) return <ErrorNote error={visit.error} />;
   const files = recordings.data?.items ?? [];
   return (
     <Stack maw={1100} mx="auto">
       <div>
         <Anchor component={Link} href={`/patients/${visit.data.patient_id}`}>
-          {t("patient")}
+          {patient.data?.pseudonym ?? t("patient")}
         </Anchor>
         <Group>
           <Title order={1}>{t("visitOn", { date: date(visit.data.visited_on) })}</Title>
