@@ -30,6 +30,7 @@ import issue6_jobs  # noqa: F401 - registers its measurements
 import issue6_service  # noqa: F401 - registers its measurements
 import issue6_uploads  # noqa: F401 - registers its measurements
 import issue6_web  # noqa: F401 - registers its measurements
+import issue7_pages  # noqa: F401 - registers its measurements
 from registry import MEASUREMENTS, ROOT, Measurement, holds
 
 FOLDER = ROOT / "benchmarks" / "evidence"

@@ -1,7 +1,6 @@
 """A clinic with the built pages, and a headless Chromium that looks at them."""
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -10,6 +9,8 @@ from pathlib import Path
 from uuid import UUID
 
 import pytest
+from browser_driver import chromium_path, launched, new_context
+from browser_driver import sign_in as type_and_enter
 from web_world import PASSWORD, running_world
 
 from gaitlab.api.pages import FRONTEND
@@ -24,18 +25,14 @@ WEIGHTED = Path(__file__).parent / "weights_of_the_demo.zip"
 
 @pytest.fixture(scope="session")
 def chromium():
-    """A browser; playwright's own is not downloaded, the distribution's is used."""
-    path = shutil.which("chromium") or shutil.which("chromium-browser")
-    if path is None:
+    """A browser, where there is one."""
+    if chromium_path() is None:
         pytest.skip("no Chromium on this machine: apt-get install chromium")
     if not (FRONTEND / "index.html").is_file():
         pytest.skip("the web pages are not built: make frontend")
     api = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
-    with api.sync_playwright() as driver:
-        # Without its sandbox, because continuous integration is root.
-        browser = driver.chromium.launch(executable_path=path, args=["--no-sandbox", "--use-gl=swiftshader"])
+    with launched(api.sync_playwright) as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="session")
@@ -70,10 +67,7 @@ def working(settings):
 @contextmanager
 def opened_page(chromium, world, width=1280, theme="light"):
     """A page on which nobody is signed in; it fails the test when it asks anybody else for anything."""
-    size = {"width": width, "height": 900}
-    context = chromium.new_context(
-        base_url=str(world.client.base_url), viewport=size, locale="en-GB", color_scheme=theme, reduced_motion="reduce"
-    )
+    context = new_context(chromium, world.client.base_url, width=width, color_scheme=theme)
     context.set_default_timeout(WAIT_MS)
     page = context.new_page()
     foreign, errors = [], []
@@ -104,12 +98,8 @@ def page(stranger, clinic):
 
 
 def sign_in(page, login):
-    """Type name and password."""
-    page.goto("/")
-    page.get_by_label("Login").fill(login)
-    page.locator("input[type=password]").fill(PASSWORD)
-    page.get_by_role("button", name="Sign in").click()
-    page.get_by_role("heading", name="Patients").wait_for()
+    """As anybody of the clinic."""
+    type_and_enter(page, login, PASSWORD)
 
 
 def add_weighted_result(world, folder):

@@ -1,7 +1,7 @@
 /** Single cycles, cut out of the curves over time that stand beside the result. */
 import { useQuery } from "@tanstack/react-query";
 import { stridesIn } from "./cycle";
-import type { ResultDocument, Side } from "./document";
+import type { ResultDocument, Side, Stride } from "./document";
 import { readFile, trialFile } from "./files";
 import { parseTable, resample, type Table } from "./table";
 
@@ -12,24 +12,46 @@ async function table(resultId: string, name: string): Promise<Table | null> {
   return response && parseTable(await response.text());
 }
 
+type Collected = Record<string, Partial<Record<Side, (number | null)[][]>>>;
+
+interface Source {
+  name: string;
+  curves: readonly string[];
+  /** A stride that misses the plate for a moment has no forces at all. */
+  whole: boolean;
+}
+
+/** Cut the strides of one table into cycles. */
+function cut(found: Collected, read: Table, strides: readonly Stride[], { curves, whole }: Source): void {
+  for (const stride of strides) {
+    for (const curve of curves) {
+      const cycle = resample(read, `${stride.side}_${curve}`, stride);
+      if (whole && cycle.includes(null)) continue;
+      const sides = (found[curve] ??= {});
+      (sides[stride.side] ??= []).push(cycle);
+    }
+  }
+}
+
 async function readCycles(resultId: string, document: ResultDocument): Promise<Cycles> {
   const strides = stridesIn(document);
   const trials = [...new Set(strides.map((stride) => stride.trial))];
-  const angles: Record<string, Partial<Record<Side, (number | null)[][]>>> = {};
+  const tables: Source[] = [
+    { name: "angles.csv", curves: Object.keys(document.kinematics), whole: false },
+    { name: "kinetics.csv", curves: Object.keys(document.kinetics?.curves ?? {}), whole: true },
+  ].filter(({ curves }) => curves.length > 0);
+  const found: Collected = {};
   for (const trial of trials) {
-    const read = await table(resultId, trialFile(trials, trial, "angles.csv"));
-    if (!read) continue;
-    for (const stride of strides.filter((each) => each.trial === trial)) {
-      for (const curve of Object.keys(document.kinematics)) {
-        const sides = (angles[curve] ??= {});
-        (sides[stride.side] ??= []).push(resample(read, `${stride.side}_${curve}`, stride));
-      }
+    const own = strides.filter((each) => each.trial === trial);
+    for (const source of tables) {
+      const read = await table(resultId, trialFile(trials, trial, source.name));
+      if (read) cut(found, read, own, source);
     }
   }
-  return angles;
+  return found;
 }
 
-/** All cycles of the angles; null until they are read, or while they are not wanted. */
+/** All cycles of angles and kinetics; null until they are read, or while they are not wanted. */
 export function useCycles(resultId: string, document: ResultDocument, wanted: boolean): Cycles | null {
   const cycles = useQuery({
     queryKey: ["cycles", resultId],
