@@ -12,7 +12,7 @@ from registry import Row, measurement
 from service_kills import Plan, Service, demo_files, kill_at_random
 
 PORT = 18765
-PLAN = Plan(kills=200, inspections=80, analyses=10, solves=10, pause=(0.5, 10.0), deadline=4 * 3600.0)
+PLAN = Plan(kills=200, inspections=80, analyses=16, solves=4, pause=(0.5, 6.0), deadline=4 * 3600.0)
 LATER_STARTS = 3
 
 

@@ -36,7 +36,7 @@ VICTIMS = {
     "computation": "gaitlab.jobs.computing_process",
 }
 SERVE = "from gaitlab.cli import main; main()"
-ATTEMPTS = 50
+ATTEMPTS = 10_000
 """Far more than the 3 of an installation: here every loss is the killer's fault, never the job's."""
 
 

@@ -79,8 +79,8 @@ class WholeService:
         self.client.headers["X-CSRF-Token"] = made.json()["csrf_token"]
         return made
 
-    def order_analysis(self, request_id="order-an-analysis"):
-        """Make a patient with a visit and its recordings, and ask for a whole analysis; the job's id."""
+    def make_visit(self):
+        """A patient with a name, a visit, and its recordings; the visit's id."""
         patient = self.post("patients", {"pseudonym": f"P-{time.monotonic_ns()}"})["id"]
         self.client.put(f"/api/v1/patients/{patient}/identity", json={"name": PATIENT}).raise_for_status()
         visit = self.post(f"patients/{patient}/sessions", {"visited_on": "2026-11-20"})["id"]
@@ -88,7 +88,12 @@ class WholeService:
             content = (DEMO / name).read_bytes()
             address = f"/api/v1/sessions/{visit}/recordings?name={name}"
             self.client.post(address, content=content).raise_for_status()
-        return self.post("analyses", {"kind": "analyse", "session_id": visit}, {"X-Request-ID": request_id})["id"]
+        return visit
+
+    def order_analysis(self, request_id="order-an-analysis"):
+        """Ask for a whole analysis of a new patient's visit; the job's id."""
+        order = {"kind": "analyse", "session_id": self.make_visit()}
+        return self.post("analyses", order, {"X-Request-ID": request_id})["id"]
 
     def post(self, path, body, headers=None):
         answer = self.client.post(f"/api/v1/{path}", json=body, headers=headers)
