@@ -5,7 +5,7 @@ import { useI18n } from "../i18n/I18n";
 import type { Quantity, Wide } from "./wide";
 
 /** Bars that are drawn; the table has all. */
-const MOST = 100;
+const MOST = 40;
 
 interface Props {
   quantities: readonly Quantity[];

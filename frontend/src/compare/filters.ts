@@ -18,7 +18,7 @@ export function meets(row: readonly Cell[], columns: readonly string[], filter: 
     .filter(Boolean)
     .every((word) => {
       const [, name, sign, bound] = CONDITION.exec(word) ?? [];
-      if (!name || !sign) return row.some((cell) => String(cell ?? "").toLowerCase().includes(word));
+      if (!name || !sign) return row.some((cell) => typeof cell === "string" && cell.toLowerCase().includes(word));
       return columns.some((column, index) => column.includes(name) && holds(row[index] ?? null, sign, Number(bound)));
     });
 }

@@ -45,6 +45,12 @@ export function widen(tables: Readonly<Record<string, Long>>, results: readonly 
   return { quantities: [...quantities.values()], values };
 }
 
+/** Parts one after the other; a quantity that one of them has is one of all. */
+export function join(parts: readonly Wide[]): Wide {
+  const quantities = new Map(parts.flatMap((part) => part.quantities.map((each) => [each.key, each] as const)));
+  return { quantities: [...quantities.values()], values: new Map(parts.flatMap((part) => [...part.values])) };
+}
+
 /** A cell of a csv file. */
 export function csvCell(cell: Cell): string {
   const text = String(cell ?? "");

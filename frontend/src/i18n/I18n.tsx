@@ -32,16 +32,24 @@ function initialLanguage(): Language {
 function make(language: Language, setLanguage: (language: Language) => void): I18n {
   const words = WORDS[language];
   const locale = language === "de" ? "de-DE" : "en-GB";
+  // Made once: a long table asks for thousands of numbers.
+  const numbers = new Map<number, Intl.NumberFormat>();
+  const numbersWith = (digits: number) => {
+    const known = numbers.get(digits);
+    if (known) return known;
+    const made = new Intl.NumberFormat(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+    numbers.set(digits, made);
+    return made;
+  };
+  const dates = new Intl.DateTimeFormat(locale, { day: "2-digit", month: "short", year: "numeric" });
+  const moments = new Intl.DateTimeFormat(locale, { dateStyle: "medium", timeStyle: "medium" });
   return {
     language,
     setLanguage,
     t: (key, values) => fill(words[key], values),
-    number: (value, digits = 1) =>
-      value == null
-        ? "–"
-        : value.toLocaleString(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits }),
-    date: (iso) => new Date(iso).toLocaleDateString(locale, { day: "2-digit", month: "short", year: "numeric" }),
-    moment: (iso) => new Date(iso).toLocaleString(locale, { dateStyle: "medium", timeStyle: "medium" }),
+    number: (value, digits = 1) => (value == null ? "–" : numbersWith(digits).format(value)),
+    date: (iso) => dates.format(new Date(iso)),
+    moment: (iso) => moments.format(new Date(iso)),
     name: (apiName) => {
       if (apiName.startsWith("gvs_")) return `GVS ${words[`n_${apiName.slice(4)}` as Key] ?? apiName}`;
       const known = words[`n_${apiName}` as Key] as string | undefined;
