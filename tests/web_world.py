@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, date, datetime, timedelta
@@ -210,6 +211,13 @@ class World:
         """A browser of its own, in which nobody is signed in."""
         self.browsers.append(httpx.Client(base_url=self.client.base_url, timeout=60.0))
         return self.browsers[-1]
+
+    def wait_until(self, look, seconds=30.0):
+        """Wait for something that happens by itself."""
+        deadline = time.monotonic() + seconds
+        while not look():
+            assert time.monotonic() < deadline, "it does not happen"
+            time.sleep(0.05)
 
     def close(self):
         """Close all browsers."""

@@ -1,5 +1,7 @@
 import hashlib
 
+import ezc3d
+import numpy as np
 import pytest
 from sqlalchemy import select
 from web_world import DEMO
@@ -106,11 +108,26 @@ def test_an_upload_can_be_given_up(world, clinician, case, content):
     assert send(world, clinician, upload["id"], 100, content[100:]).status_code == 409
 
 
-def test_names_in_a_header_are_blanked(world, clinician, case, content):
+@pytest.fixture
+def named(tmp_path):
+    """A C3D file that says in its header who was recorded."""
+    file = ezc3d.c3d()
+    file["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    file["parameters"]["POINT"]["LABELS"]["value"] = ["LASI"]
+    file["data"]["points"] = np.ones((4, 1, 5))
+    file.add_parameter("SUBJECTS", "NAMES", ["Jane Doe"])
+    file.write(str(tmp_path / "named.c3d"))
+    return (tmp_path / "named.c3d").read_bytes()
+
+
+def test_names_in_a_header_are_blanked_and_the_old_content_is_gone(world, clinician, case, named):
     address = f"/api/v1/sessions/{case.session_id}/recordings?name=Static_1.c3d"
-    made = world.client.post(address, headers=clinician, content=content).json()
-    assert made["kind"] == "static"
+    made = world.client.post(address, headers=clinician, content=named).json()
+    assert made["kind"] == "static" and world.services.files.read(made["sha256"]) == named
     stripped = world.client.post(f"/api/v1/recordings/{made['id']}/strip", headers=clinician).json()
-    assert stripped["blanked"] == [] or stripped["recording"]["sha256"] != made["sha256"]
+    assert stripped["blanked"] == ["SUBJECTS:NAMES"]
     file = world.client.get(f"/api/v1/recordings/{made['id']}/file", headers=clinician).content
-    assert hashlib.sha256(file).hexdigest() == stripped["recording"]["sha256"]
+    assert hashlib.sha256(file).hexdigest() == stripped["recording"]["sha256"] != made["sha256"]
+    assert b"Jane" in named and b"Jane" not in file and not world.services.files.exists(made["sha256"])
+    again = world.client.post(f"/api/v1/recordings/{made['id']}/strip", headers=clinician).json()
+    assert again["blanked"] == []
