@@ -4,6 +4,7 @@ Progress goes to the descriptor, one JSON object a line; how it ended goes to `o
 appears in one step. It dies with the worker that started it.
 """
 
+import contextlib
 import ctypes
 import importlib
 import json
@@ -24,6 +25,7 @@ from .request import Work
 OUTCOME = "outcome.json"
 PARENT_DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of prctl(2)."""
+AUTOGROUP = Path("/proc/self/autogroup")
 PACKAGES = ("numpy", "scipy", "casadi", "pin", "ezc3d")
 INTERVAL = 0.2
 """Shortest time between two reports of the same stage [s]."""
@@ -93,6 +95,9 @@ def _limit(memory: int, niceness: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     os.nice(niceness)
+    # Linux may weigh whole sessions against each other (sched(7), autogroup), and this process has one of its own.
+    with contextlib.suppress(OSError):
+        AUTOGROUP.write_text(str(niceness))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from gaitlab.jobs.computing_process import AUTOGROUP
 from gaitlab.jobs.request import Work
 from gaitlab.jobs.supervision import Limits, Verdict, Watch, run_process
 
@@ -64,6 +65,13 @@ def test_a_refusal_is_the_sentence_of_the_command_line_without_folders(tmp_path,
 def test_the_memory_limit_holds(tmp_path, toy):
     ended = run(tmp_path, toy, Follower(), do="grow", bytes=2 * LIMITS.memory)
     assert ended.outcome["error_kind"] == "OutOfMemory"
+
+
+def test_long_computations_step_back_also_where_sessions_are_weighed_against_each_other(tmp_path, toy):
+    limits = Limits(seconds=120.0, memory=LIMITS.memory, niceness=7)
+    told = run(tmp_path, toy, Follower(), limits, do="step_back").outcome["summary"]
+    assert told["nice"] == os.nice(0) + 7
+    assert told["session"].split()[-2:] == ["nice", "7"] if AUTOGROUP.exists() else told["session"] == ""
 
 
 def test_a_computation_without_end_is_ended(tmp_path, toy):
