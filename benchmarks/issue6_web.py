@@ -52,9 +52,12 @@ async def _browse(world: World, rate: float, seconds: float) -> tuple[list[float
         async def one(number: int, due: float) -> None:
             nonlocal failed
             await asyncio.sleep(max(due - time.perf_counter(), 0.0))
-            answer = await client.get(pages[number % len(pages)])
+            try:
+                answer = await client.get(pages[number % len(pages)])
+                failed += answer.status_code != 200
+            except httpx.TransportError:
+                failed += 1
             took.append(time.perf_counter() - due)
-            failed += answer.status_code != 200
 
         start = time.perf_counter() + 0.5
         await asyncio.gather(*(one(number, start + number / rate) for number in range(int(rate * seconds))))

@@ -14,6 +14,8 @@ from ..storage.settings import Settings
 from .children import settings_from_parent
 
 SHUTDOWN_SECONDS = 10
+KEEP_ALIVE_SECONDS = 75
+"""Longer than proxies keep idle connections, or one of them would send a request into a connection that just closes."""
 
 
 def main() -> None:
@@ -30,6 +32,7 @@ def main() -> None:
         ssl_certfile=settings.tls_certificate,
         ssl_keyfile=settings.tls_key,
         timeout_graceful_shutdown=SHUTDOWN_SECONDS,
+        timeout_keep_alive=KEEP_ALIVE_SECONDS,
     )
     uvicorn.Server(config).run([socket.socket(fileno=int(sys.argv[1]))])
 
