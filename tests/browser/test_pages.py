@@ -1,9 +1,10 @@
 """What people do in the browser, in a real one."""
 
 import pytest
+from sqlalchemy import update
 from web_world import DEMO
 
-from gaitlab.storage.models import Role
+from gaitlab.storage.models import Job, JobStatus, Role
 
 from .conftest import sign_in
 
@@ -76,6 +77,16 @@ def test_a_waiting_job_is_cancelled(page, clinic):
     page.get_by_text("Cancelled").wait_for()
     answer = clinic.client.get(f"/api/v1/analyses/{case.waiting_id}", headers=clinic.as_role(Role.CLINICIAN))
     assert answer.json()["status"] == "cancelled"
+
+
+def test_a_long_queue_leaves_room_for_other_pages(page, clinic):
+    waiting = [clinic.make_case().waiting_id for _ in range(8)]
+    with clinic.services.database.transaction() as db:
+        db.execute(update(Job).where(Job.id.in_(waiting)).values(status=JobStatus.RUNNING))
+    page.goto("/jobs")
+    page.get_by_test_id("job").nth(8).wait_for()
+    page.goto("/patients")
+    page.get_by_role("heading", name="Patients").wait_for()
 
 
 def test_the_report_is_downloaded(page, result):

@@ -6,6 +6,7 @@ import { ErrorNote } from "../app/ErrorNote";
 import { useI18n, type Key } from "../i18n/I18n";
 import { JobCard } from "./JobCard";
 import type { Job } from "./progress";
+import { isOver, LOOK_AGAIN_MS } from "./useJob";
 
 const STATES: Job["status"][] = ["queued", "running", "succeeded", "failed", "cancelled"];
 const REFRESH_MS = 10_000;
@@ -17,7 +18,7 @@ export default function JobsPage() {
     queryKey: ["jobs", { status }],
     queryFn: () =>
       unwrap(client.GET("/api/v1/analyses", { params: { query: { ...(status ? { status } : {}), limit: 50 } } })),
-    refetchInterval: REFRESH_MS,
+    refetchInterval: ({ state }) => (state.data?.items.every(isOver) ? REFRESH_MS : LOOK_AGAIN_MS),
   });
   return (
     <Stack maw={1100} mx="auto">

@@ -7,6 +7,8 @@ import { client, unwrap } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { JobCard } from "../jobs/JobCard";
+import type { Job } from "../jobs/progress";
+import { isOver, LOOK_AGAIN_MS } from "../jobs/useJob";
 import { changesOf } from "./changes";
 
 /** Quantities that are always offered, each changed by some per cent; others can be added. */
@@ -53,10 +55,7 @@ export function WhatIf({ resultId }: { resultId: string }) {
       </Group>
       <ErrorNote error={predict.error} />
       {predict.data && (
-        <>
-          <JobCard job={predict.data} />
-          <Predicted jobId={predict.data.id} resultId={resultId} />
-        </>
+        <Predicted asked={predict.data} resultId={resultId} />
       )}
     </Paper>
   );
@@ -108,18 +107,24 @@ function MoreQuantities({ shown, onAdd }: { shown: readonly string[]; onAdd: (qu
   );
 }
 
-/** The way from a finished prediction to its curves over the measured ones. */
-function Predicted({ jobId, resultId }: { jobId: string; resultId: string }) {
+/** The prediction's job, and the way from its end to its curves over the measured ones. */
+function Predicted({ asked, resultId }: { asked: Job; resultId: string }) {
   const { t } = useI18n();
-  const job = useQuery({
-    // Under "jobs", so that it is asked anew when the job says that it has ended.
-    queryKey: ["jobs", jobId],
-    queryFn: () => unwrap(client.GET("/api/v1/analyses/{analysis_id}", { params: { path: { analysis_id: jobId } } })),
+  const path = { analysis_id: asked.id };
+  const { data: job } = useQuery({
+    queryKey: ["jobs", asked.id],
+    queryFn: () => unwrap(client.GET("/api/v1/analyses/{analysis_id}", { params: { path } })),
+    initialData: asked,
+    refetchInterval: ({ state }) => (state.data && isOver(state.data) ? false : LOOK_AGAIN_MS),
   });
-  if (!job.data?.result_id) return null;
   return (
-    <Anchor component={Link} href={`/compare?results=${resultId},${job.data.result_id}`}>
-      {t("overlayPredicted")}
-    </Anchor>
+    <>
+      <JobCard job={job} />
+      {job.result_id && (
+        <Anchor component={Link} href={`/compare?results=${resultId},${job.result_id}`}>
+          {t("overlayPredicted")}
+        </Anchor>
+      )}
+    </>
   );
 }

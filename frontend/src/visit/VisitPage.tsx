@@ -7,6 +7,7 @@ import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { JobCard } from "../jobs/JobCard";
+import { isOver, LOOK_AGAIN_MS } from "../jobs/useJob";
 import { usePatient } from "../patients/usePatient";
 import { Attachments } from "./Attachments";
 import { BodyParameters } from "./BodyParameters";
@@ -15,8 +16,6 @@ import { Examination } from "./Examination";
 import { RecordingCard } from "./RecordingCard";
 import { RunPanel } from "./RunPanel";
 import { Upload } from "./Upload";
-
-const LOOK_AGAIN_MS = 2_000;
 
 export default function VisitPage({ id }: { id: string }) {
   const { t, date } = useI18n();
@@ -37,6 +36,7 @@ export default function VisitPage({ id }: { id: string }) {
     queryKey: ["jobs", { session_id: id }],
     queryFn: () =>
       unwrap(client.GET("/api/v1/analyses", { params: { query: { session_id: id, kind: "analyse", limit: 20 } } })),
+    refetchInterval: ({ state }) => (state.data?.items.every(isOver) ? false : LOOK_AGAIN_MS),
   });
   const patient = usePatient(visit.data?.patient_id ?? null);
   if (!visit.data) return <ErrorNote error={visit.error} />;
