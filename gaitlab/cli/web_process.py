@@ -3,6 +3,7 @@
 The parent keeps the socket: while this process is started again, requests wait instead of failing.
 """
 
+import gc
 import socket
 import sys
 
@@ -18,12 +19,20 @@ KEEP_ALIVE_SECONDS = 75
 """Longer than proxies keep idle connections, or one of them would send a request into a connection that just closes."""
 
 
+def spare_what_stays() -> None:
+    """Take what was loaded out of Python's search for garbage: to look through it all again makes requests wait."""
+    gc.collect()
+    gc.freeze()
+
+
 def main() -> None:
     """Serve until SIGTERM or the end of the parent."""
     settings = Settings(**settings_from_parent())
     configure_logs(settings.log_format)
+    app = create_app(settings)
+    spare_what_stays()
     config = uvicorn.Config(
-        create_app(settings),
+        app,
         log_config=None,
         access_log=False,
         server_header=False,
