@@ -95,6 +95,14 @@ def test_an_analysis_gets_its_options(ordered, heard, case):
     assert options.parameters == {"mass": 30.0}
 
 
+def test_corrected_events_reach_the_analysis(ordered, heard, case):
+    strike = {"side": "left", "kind": "foot_strike", "time_s": 0.5}
+    body = {"kind": "analyse", "session_id": case.session_id, "settings": {"events": {"Jane_walk": [strike]}}}
+    analysis.run(ordered(**body), silent)
+    (event,) = heard["analyse_files"][1].events["Jane_walk"]
+    assert (event.side, event.kind, event.time_s) == ("left", "foot_strike", 0.5)
+
+
 def test_a_comparison_gets_its_groups(ordered, heard, case):
     members = [{"result_id": case.result_id, "group": "before"}]
     outcome = comparison.run(ordered(kind="compare", members=members), silent)

@@ -18,7 +18,7 @@ from gaitlab.jobs.imported import import_result
 from gaitlab.jobs.request import JobRequest
 from gaitlab.storage.models import JobKind, Role
 
-WAIT_MS = 20_000
+WAIT_MS = 40_000
 WEIGHTED = Path(__file__).parent / "weights_of_the_demo.zip"
 """What `gaitlab demo` wrote for walk1, without the pages: some minutes of computation."""
 
