@@ -25,8 +25,8 @@ PAGES = "; ".join(
 )
 VIEWER = "; ".join(
     (
-        # viser's client is one page with its script, styles, worker and WebAssembly inside; three.js makes functions
-        # of strings, without which skeletons are not drawn.
+        # viser's client is one page with its script, styles, worker and WebAssembly inside, and makes functions of
+        # strings at run time: without leave to, Chromium reports an error in it.
         "default-src 'none'",
         "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:",
         "style-src 'self' 'unsafe-inline'",
