@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,12 +18,6 @@ from .gait_cases import GaitCase
 
 CERTIFICATE = 1e-6
 """Largest first-order residual of a certified solution."""
-
-DRAWN = 0.1
-"""Weight of half the mean squared residual in the lower level while the search begins."""
-APPROACH = (10.0, 1.0, DRAWN)
-"""Such weights on the way from the measurements."""
-FIRST_STEPS = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,8 +91,8 @@ def solve_case(
 ) -> GaitRun:
     """Weights from simulated measurements, from start weights, shape (4,), equal ones by default.
 
-    The search begins with a lower level that is drawn to the measurements, and goes on without. Workers solve the
-    stages side by side.
+    The optimal gait for the start weights is found by tracking the measurements first. Workers solve the stages side
+    by side.
 
     Raises:
         NotConverged: The lower level is not solved for the first weights.
@@ -107,30 +101,17 @@ def solve_case(
     measured = case.measured(noise, seed)
     began = time.perf_counter()
     level = GaitLevel(case.gait, measured, workers=workers)
-    estimate = _search(level, theta, progress)
+    first = level.from_measurements(theta)
+    status = first.solution.status
+    if status is not Status.SOLVED:
+        raise NotConverged(f"{case.gait.name}: no optimal gait for the first weights: {status}")
+    estimate = ImplicitGaussNewton().solve(level, theta, first, progress)
     seconds = time.perf_counter() - began
     problems = level.problems(estimate.theta)
     optimum = GaitOptimum(level, problems, level.split(estimate.response.solution))
     return GaitRun(
         case=case, noise=noise, seed=seed, level=level, estimate=estimate, optimum=optimum, seconds=seconds
     )  # fmt: skip
-
-
-def _search(level: GaitLevel, theta: np.ndarray, progress: Callable[[int, float], None] | None) -> WeightEstimate:
-    drawn = level.drawn(DRAWN)
-    response = drawn.from_measurements(theta, APPROACH)
-    first = ImplicitGaussNewton(max_iter=FIRST_STEPS).solve(drawn, theta, _solved(level, response), progress)
-    free = level.respond(first.theta, first.response.solution)
-    last = ImplicitGaussNewton().solve(level, first.theta, _solved(level, free), progress)
-    lower = first.lower_iterations + free.solution.iterations + last.lower_iterations
-    return replace(last, iterations=first.iterations + last.iterations, lower_iterations=lower)
-
-
-def _solved(level: GaitLevel, response: GaitOptimum) -> GaitOptimum:
-    status = response.solution.status
-    if status is not Status.SOLVED:
-        raise NotConverged(f"{level.gait.name}: no optimal gait for the first weights: {status}")
-    return response
 
 
 COLUMNS = ("quantity", "thesis", "ours", "truth")

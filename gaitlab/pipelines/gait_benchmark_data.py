@@ -44,8 +44,6 @@ ENDS = 50.0
 """Factor on the tracking of velocities at the ends of a stage, which keeps landings slow."""
 TORQUE_FLOOR, FORCE_WEIGHT = 0.01, 1e-4
 """The floors of `walking.identification`."""
-PATH = (10.0, 1.0, 0.1, 0.0)
-"""Weights of tracking on the way from the tracked motion to the optimal one."""
 FLOOR_OF_STAGE = ((3 * POINTS.index("left_toe") + 2,), (3 * POINTS.index("right_toe") + 2,), ())
 """Heights that are zero at the end of each stage."""
 LANDING = ("left_toe", "right_toe")
@@ -211,7 +209,7 @@ def _level(gait: PointFootGait, states: tuple[np.ndarray, ...]) -> GaitLevel:
 
 
 def _optimum(gait: PointFootGait, start: _Start, weights: np.ndarray) -> GaitOptimum:
-    found = _level(gait, start.states).from_measurements(weights, PATH)
+    found = _level(gait, start.states).from_measurements(weights)
     if found.solution.status is not Status.SOLVED:
         raise NotConverged(f"{gait.name}: the true weights have no optimal gait: {found.solution.status}")
     return found

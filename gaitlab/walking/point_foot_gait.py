@@ -12,8 +12,7 @@ own conditions, posture at the start and place of the pelvis at the end, the opt
 its feet by several radians. As states are given, the stages share only the weights and are solved one by one.
 """
 
-from collections.abc import Sequence
-from copy import copy
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from uuid import uuid4
@@ -51,13 +50,17 @@ CALM = 0.01
 """Weight [s^2] of errors of the velocities of the first guess beside those of the coordinates, while tracking: it keeps
 the nodes from ringing."""
 
-PATH = (100.0, 1.0, 0.1, 0.0)
+PATH = (10.0, 1.0, 0.1, 0.0)
 """Weights of half the mean squared residual on the way from the measurements to the optimal gait."""
+WAY = (10.0, 0.5, 0.05, 0.0)
+"""The same from the tracked motion for other weights of the criteria."""
+PATIENCE = 60
+"""Iterations granted on such a way."""
 
 NEAR_BARRIER = 1e-5
 """First barrier parameter where motion and forces are known nearly, but no multipliers."""
 
-NEARBY = 15
+NEARBY = 10
 """Iterations granted to a start that should be close."""
 
 
@@ -112,8 +115,6 @@ class GaitLevelSettings:
     )
     barriers: tuple[float, ...] = (1e-4, 1e-3, 1e-2)
     """First barrier parameters that are tried in turn from far starts."""
-    on_the_way: float = 1e-3
-    """Tolerance of problems that only lead to the next one; their barrier parameter stays."""
 
 
 class GaitOptimum:
@@ -212,7 +213,8 @@ class GaitLevel:
 
         Workers solve the stages side by side.
         """
-        self.tracking, self.workers, self._key = 0.0, workers, uuid4().hex
+        self.workers, self._key = workers, uuid4().hex
+        self._tracked: dict[int, SparseSolution] = {}
         self.gait, self.measured, self.settings = gait, measured, settings or GaitLevelSettings()
         self.indices = [list(ALL).index(name) for name in THESIS]
         self.n_q = gait.subject.n_q
@@ -235,20 +237,10 @@ class GaitLevel:
         layout = MechanicalLayout((self.gait.stages[k],), self.n_q, N_FORCES, ROOT, boundary, ANGLES)
         return MechanicalStructure(without_redundant_contacts(layout, functions, self.p, self.first[k]), functions)
 
-    def drawn(self, tracking: float) -> "GaitLevel":
-        """The same level with half the mean squared residual, times a weight, among its criteria.
-
-        Drawn to the measurements, optima for wrong weights stay near them: the search begins here.
-        """
-        level = copy(self)
-        level.tracking = tracking
-        return level
-
-    def problems(self, theta: np.ndarray, tracking: float | None = None) -> tuple[MechanicalProblem, ...]:
+    def problems(self, theta: np.ndarray, tracking: float = 0.0) -> tuple[MechanicalProblem, ...]:
         """The stages for weights theta, shape (n_theta,), and a weight of half the mean squared residual."""
-        weight = self.tracking if tracking is None else tracking
         return tuple(
-            MechanicalProblem(structure, self._data(k, theta, weight)) for k, structure in enumerate(self.structures)
+            MechanicalProblem(structure, self._data(k, theta, tracking)) for k, structure in enumerate(self.structures)
         )
 
     def _data(self, k: int, theta: np.ndarray, tracking: float) -> MechanicalData:
@@ -276,31 +268,48 @@ class GaitLevel:
         )
 
     def respond(self, theta: np.ndarray, start: SparseSolution) -> GaitOptimum:
-        """Solve for theta, shape (n_theta,), from a nearby solution."""
-        near = replace(self.settings.solver, max_iter=NEARBY)
-        return self._solve(self.problems(theta), self.split(start), (near, *self._far))
+        """Solve for theta, shape (n_theta,), from a nearby solution.
+
+        Stages for which it is not near go the way from the tracked motion, if `from_measurements` has found one.
+        """
+        problems, near = self.problems(theta), replace(self.settings.solver, max_iter=NEARBY)
+        found = self._solve(problems, dict(enumerate(self.split(start))), (near,))
+        lost = [k for k, x in found.items() if x.status is not Status.SOLVED]
+        if lost and self._tracked:
+            found |= self._along(theta, WAY, {k: self._tracked[k] for k in lost})
+        elif lost:
+            found |= self._solve(problems, {k: found[k] for k in lost}, self._far)
+        return GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
 
     def from_measurements(self, theta: np.ndarray, path: Sequence[float] = PATH) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), from the measurements: tracking first, then less, at last none."""
-        problems = self.problems(theta)
-        starts: Sequence[SparseSolution | np.ndarray] = [self._guess(p, k) for k, p in enumerate(problems)]
-        rough = [replace(m, tol=self.settings.on_the_way, mu_final=m.mu_initial) for m in self._far]
-        for tracking in path[:-1]:
-            starts = self._solve(self.problems(theta, tracking), starts, rough).solutions
-        return self._solve(self.problems(theta, path[-1]), starts, self._far)
+        problems = self.problems(theta, path[0])
+        guesses = {k: self._guess(problem, k) for k, problem in enumerate(problems)}
+        self._tracked = self._solve(problems, guesses, self._far)
+        found = self._along(theta, path[1:], self._tracked)
+        return GaitOptimum(self, self.problems(theta, path[-1]), [found[k] for k in range(len(problems))])
+
+    def _along(
+        self, theta: np.ndarray, path: Sequence[float], starts: dict[int, SparseSolution]
+    ) -> dict[int, SparseSolution]:
+        """Follow the optima of some stages along weights of tracking."""
+        patient = replace(self.settings.solver, max_iter=PATIENCE)
+        for tracking in path:
+            starts = self._solve(self.problems(theta, tracking), starts, (patient, *self._far))
+        return starts
 
     def from_forces(self, theta: np.ndarray, forces: Sequence[np.ndarray]) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), from the first states and forces of the floor at the Gauss points.
 
         The forces [body weights] of each stage have shape (2 N_k, n_f), those of points in the air are not read.
         """
-        problems, starts = self.problems(theta), list[np.ndarray]()
+        problems, starts = self.problems(theta), dict[int, np.ndarray]()
         for k, problem in enumerate(problems):
-            w, index = self._guess(problem, k), problem.shared.force_index
-            w[index[index >= 0]] = forces[k][index >= 0]
-            starts.append(w)
+            starts[k], index = self._guess(problem, k), problem.shared.force_index
+            starts[k][index[index >= 0]] = forces[k][index >= 0]
         near = replace(self.settings.solver, mu_initial=NEAR_BARRIER)
-        return self._solve(problems, starts, (near, *self._far))
+        found = self._solve(problems, starts, (near, *self._far))
+        return GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
 
     def at_start(self, theta: np.ndarray) -> GaitOptimum:
         """The first guess for theta, shape (n_theta,), in the form of an optimum, with its residuals."""
@@ -318,24 +327,24 @@ class GaitLevel:
     def _solve(
         self,
         problems: tuple[MechanicalProblem, ...],
-        starts: Sequence[SparseSolution | np.ndarray],
+        starts: Mapping[int, SparseSolution | np.ndarray],
         methods: Sequence[InteriorPoint],
-    ) -> GaitOptimum:
-        pairs = zip(problems, starts, strict=True)
+    ) -> dict[int, SparseSolution]:
+        """Solve the stages that have a start."""
         if self.workers is None:
-            return GaitOptimum(self, problems, [solve_in_turn(p, start, methods) for p, start in pairs])
+            return {k: solve_in_turn(problems[k], start, methods) for k, start in starts.items()}
         tasks = [
             ArcTask(
                 key=f"{self._key}-{k}",
                 model=self.layout,
-                layout=problem.shared.layout,
-                data=problem.data,
+                layout=problems[k].shared.layout,
+                data=problems[k].data,
                 start=start,
                 methods=tuple(methods),
             )
-            for k, (problem, start) in enumerate(pairs)
+            for k, start in starts.items()
         ]
-        return GaitOptimum(self, problems, self.workers.map(tasks))
+        return dict(zip(starts, self.workers.map(tasks), strict=True))
 
     def split(self, x: SparseSolution) -> list[SparseSolution]:
         """The stages of a joint solution."""
