@@ -52,10 +52,11 @@ from .services import Services
 from .viewers import Limits, Owner, Viewers
 
 PREFIX = "/api/v1"
-CONNECTIONS = 20
-"""Of the database, kept open; as many more for peaks."""
 THREADS = 30
-"""Requests worked on at a time; fewer than connections, or threads would wait for each other's."""
+"""Requests worked on at a time."""
+CONNECTIONS, SPARE = THREADS + 2, 8
+"""Of the database: one for each thread and kept open, because new ones in a peak would make it worse; spare ones for
+audit lines that outlive an undone transaction."""
 ROUTERS = (
     sign_in.router,
     single_sign_on.router,
@@ -121,7 +122,7 @@ def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     settings: Settings = app.state.settings
     url = settings.database_url
-    database = Database.open("" if url is None else url.get_secret_value(), CONNECTIONS)
+    database = Database.open("" if url is None else url.get_secret_value(), CONNECTIONS, SPARE)
     limits = Limits(
         per_user=settings.viewers_per_user, together=settings.viewers, idle=settings.viewer_idle_minutes * 60.0
     )

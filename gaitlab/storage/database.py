@@ -27,8 +27,14 @@ class Database:
     sessions: sessionmaker[Session] = field(repr=False)
 
     @classmethod
-    def open(cls, url: str, connections: int = 10) -> Self:
-        """Make the engine; nothing is connected before the first use."""
+    def open(cls, url: str, connections: int = 10, spare: int = 10) -> Self:
+        """Make the engine; nothing is connected before the first use.
+
+        Args:
+            url: Address of the database.
+            connections: How many are kept open.
+            spare: How many more are opened for a peak, and closed after it; each costs the server a new process.
+        """
         try:
             parts = make_url(url)
         except ArgumentError as error:
@@ -41,7 +47,7 @@ class Database:
             parts.set(drivername="postgresql+psycopg"),
             hide_parameters=True,
             pool_size=connections,
-            max_overflow=connections,
+            max_overflow=spare,
         )
         event.listen(engine, "checkout", _refuse_closed)
         plain = parts.set(drivername="postgresql").render_as_string(hide_password=False)

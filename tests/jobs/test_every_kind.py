@@ -133,7 +133,9 @@ def test_results_are_compared_and_become_norms(service, analysed):
     compared = order(service, kind="compare", members=[{**member, "group": "before"}])
     names = {file["name"] for file in compared["files"]}
     assert compared["summary"]["members"] == 1 and {name.rpartition(".")[2] for name in names} >= {"csv", "svg"}
-    cohort = service.post("cohorts", {"name": "own", "members": [member]})
+    # Norms are of at least two people.
+    other = order(service, kind="analyse", session_id=service.make_visit(), settings={"weights": False})
+    cohort = service.post("cohorts", {"name": "own", "members": [member, {"result_id": other["id"]}]})
     norms = order(service, kind="norms", cohort_id=cohort["id"], name="own laboratory")
     (file,) = [file["name"] for file in norms["files"] if file["name"].endswith("norms.json")]
-    assert json.loads(fetch(service, f"results/{norms['id']}/files/{file}"))
+    assert json.loads(fetch(service, f"results/{norms['id']}/files/{file}"))["name"] == "own laboratory"
