@@ -76,9 +76,9 @@ def whole_model_kinematics() -> Iterator[Row]:
 
 
 def _per_frame(work, n_frames: int) -> float:
-    """Best of five runs [ms per frame]."""
+    """Best of 25 runs [ms per frame]: other programs can only add."""
     seconds = []
-    for _ in range(5):
+    for _ in range(25):
         start = time.perf_counter()
         work()
         seconds.append(time.perf_counter() - start)
