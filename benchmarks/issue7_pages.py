@@ -1,6 +1,7 @@
 """Issue 7, line 2: what the first page loads, when it can be used, scripting of a cursor move, a long table's tasks."""
 
 import gzip
+import json
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -118,6 +119,7 @@ def long_table() -> Iterator[Row]:
         )
         cohort.raise_for_status()
         page.goto("/compare")
+        browser.start_tracing(page=page, categories=["toplevel", "devtools.timeline"])
         page.get_by_label("Saved cohort").select_option(label=f"all ({PATIENTS})")
         page.get_by_role("columnheader", name="Speed").first.wait_for()
         page.wait_for_timeout(2000)
@@ -129,6 +131,7 @@ def long_table() -> Iterator[Row]:
         page.get_by_role("button", name="Show more").last.click()
         page.wait_for_timeout(2000)
         using = page.evaluate("window.tasks")
+        busiest = _longest_processor_time(browser.stop_tracing())
     subject = f"{PATIENTS} patients"
     longest = max(loading, default=0.0)
     yield Row(
@@ -136,3 +139,18 @@ def long_table() -> Iterator[Row]:
     )
     subject += ": sort, filter, scroll, show more"
     yield Row(quantity="longest task", value=max(using, default=0.0), limit="<= 50", unit="ms", subject=subject)
+    # What others take from the processor while a task runs is no fault of the page.
+    subject = f"{PATIENTS} patients, load included"
+    yield Row(quantity="longest task, processor time", value=busiest, limit="<= 50", unit="ms", subject=subject)
+
+
+def _longest_processor_time(trace: bytes) -> float:
+    """Of the tasks of the page's main thread [ms]."""
+    events = json.loads(trace)["traceEvents"]
+    threads = {
+        (each["pid"], each["tid"])
+        for each in events
+        if each.get("name") == "thread_name" and each["args"].get("name") == "CrRendererMain"
+    }
+    tasks = [each for each in events if "tdur" in each and (each["pid"], each["tid"]) in threads]
+    return max(each["tdur"] for each in tasks if "RunTask" in each["name"]) / 1000.0

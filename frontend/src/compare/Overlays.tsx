@@ -43,7 +43,7 @@ export function Overlays({ ids }: { ids: readonly string[] }) {
           panel ? (
             <CyclePanel key={panel.layout.name} layout={panel.layout} data={panel.data} cursor={cursor} />
           ) : (
-            <div key={index} />
+            <div key={index} className="hole" />
           ),
         )}
       </div>

@@ -41,7 +41,7 @@ export function CurvesTab({ resultId, document, cursor, videos }: Props) {
           onPick={() => setPicked(layout)}
         />
       ) : (
-        !(in3d || inVideo) && <div key={index} />
+        !(in3d || inVideo) && <div key={index} className="hole" />
       ),
     );
   return (
