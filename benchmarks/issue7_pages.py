@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -132,16 +133,13 @@ def long_table() -> Iterator[Row]:
         page.wait_for_timeout(2000)
         using = page.evaluate("window.tasks")
         busiest = _longest_processor_time(browser.stop_tracing())
-    subject = f"{PATIENTS} patients"
-    longest = max(loading, default=0.0)
-    yield Row(
-        quantity="longest task, until the table is there", value=longest, limit="<= 50", unit="ms", subject=subject
-    )
-    subject += ": sort, filter, scroll, show more"
-    yield Row(quantity="longest task", value=max(using, default=0.0), limit="<= 50", unit="ms", subject=subject)
-    # What others take from the processor while a task runs is no fault of the page.
-    subject = f"{PATIENTS} patients, load included"
+    subject = f"{PATIENTS} patients: load, sort, filter, scroll, show more"
     yield Row(quantity="longest task, processor time", value=busiest, limit="<= 50", unit="ms", subject=subject)
+    # By the clock a task also waits for whatever else this machine computes: to be read beside its load.
+    for part, tasks in (("until the table is there", loading), ("in use", using)):
+        longest = max(tasks, default=0.0)
+        yield Row(quantity=f"longest task by the clock, {part}", value=longest, limit="", unit="ms", subject=subject)
+    yield Row(quantity="load of the machine", value=os.getloadavg()[0], limit="", unit="", subject=subject)
 
 
 def _longest_processor_time(trace: bytes) -> float:
