@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, SecretStr
+from pydantic import Field, SecretStr, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 LogFormat = Literal["json", "text"]
@@ -77,6 +77,12 @@ class Settings(BaseSettings):
     log_format: LogFormat = "json"
     metrics_port: int = Field(default=0, ge=0, le=65535)
     """Port of a worker's metrics on the loopback address; 0: none."""
+
+    @field_validator("data_dir")
+    @classmethod
+    def _from_the_root(cls, path: Path) -> Path:
+        # The embedded PostgreSQL has a working folder of its own.
+        return path.absolute()
 
     @property
     def secure_cookies(self) -> bool:
