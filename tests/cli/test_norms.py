@@ -107,7 +107,7 @@ def test_an_impossible_age_is_refused(gaitlab, files, tmp_path):
 
 def test_one_side_only(gaitlab, reads, recordings, tmp_path, monkeypatch):
     left = tuple(event for event in recordings["straight"].events if event.side == "left")
-    monkeypatch.setattr(analyse, "events_of", lambda *_, **__: left)
+    monkeypatch.setattr(analyse, "events_to_use", lambda *_: left)
     reads(static=recordings["static"], walk=recordings["straight"])
     arguments = ("analyse", "--static", "static.c3d", "walk.c3d", "--out", tmp_path, "--no-weights")
     assert gaitlab(*arguments)[0] == 0

@@ -108,7 +108,7 @@ def test_bad_input_still_makes_a_report_that_says_why(recordings, tmp_path, monk
     change, references, words = BAD[case]
     if case == "one side only":
         left = tuple(event for event in recordings["straight"].events if event.side == "left")
-        monkeypatch.setattr(analysis, "events_of", lambda recording, redetect: left)
+        monkeypatch.setattr(analysis, "events_to_use", lambda *_: left)
     options = AnalysisOptions(weights=False, references=references(tmp_path))
     found = analyse(recordings["static"], [change(recordings["straight"])], options)
     write_analysis(found, tmp_path / "out")
