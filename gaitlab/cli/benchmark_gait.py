@@ -25,25 +25,25 @@ def gait(
 ) -> None:
     """Estimate the weights of the thesis's two gaits from simulated measurements, thesis beside ours."""
     names, console, failed = [thesis_gait(name).name for name in model or available_cases()], Console(), list[str]()
-    for name in names:
-        case = load_case(name)
-        console.print(f"{case.thesis.title} ...", style="dim")
-        with worker_pool() as workers:
+    with worker_pool() as workers:
+        for name in names:
+            case = load_case(name)
+            console.print(f"{case.thesis.title} ...", style="dim")
             run = solve_case(case, noise, seed, workers=workers)
-        table, course = rows(run), courses(run.optimum)
-        console.print(as_table(case.thesis.title, COLUMNS, table))
-        title = case.thesis.title
-        files = {
-            f"{name}.csv": "\n".join(",".join(f'"{cell}"' for cell in row) for row in [COLUMNS, *table]) + "\n",
-            f"{name}-coordinates.svg": coordinates(course, title),
-            f"{name}-velocities.svg": velocities(course, title),
-            f"{name}-torques.svg": torques(course, title),
-            f"{name}-side.svg": postures(course, title, lateral=True),
-            f"{name}-front.svg": postures(course, title, lateral=False),
-        }
-        write_files(files, out)
-        console.print(f"written to {out}: {', '.join(files)}")
-        if not run.certified:
-            failed.append(name)
+            table, course = rows(run), courses(run.optimum)
+            console.print(as_table(case.thesis.title, COLUMNS, table))
+            title = case.thesis.title
+            files = {
+                f"{name}.csv": "\n".join(",".join(f'"{cell}"' for cell in row) for row in [COLUMNS, *table]) + "\n",
+                f"{name}-coordinates.svg": coordinates(course, title),
+                f"{name}-velocities.svg": velocities(course, title),
+                f"{name}-torques.svg": torques(course, title),
+                f"{name}-side.svg": postures(course, title, lateral=True),
+                f"{name}-front.svg": postures(course, title, lateral=False),
+            }
+            write_files(files, out)
+            console.print(f"written to {out}: {', '.join(files)}")
+            if not run.certified:
+                failed.append(name)
     if failed:
         raise NotConverged(f"weights without a certificate: {', '.join(failed)}")

@@ -4,7 +4,7 @@ import json
 import subprocess
 import sys
 import time
-from contextlib import closing, suppress
+from contextlib import suppress
 from pathlib import Path
 from urllib.error import URLError
 from urllib.request import urlopen
@@ -13,7 +13,6 @@ import psutil
 import typer
 
 from ..errors import OutputError
-from ..storage.database import Database
 from ..storage.files import open_store
 from ..storage.settings import Settings
 from . import service
@@ -32,18 +31,16 @@ def serve_demo(data_dir: Path, child: str, results: Path, port: int) -> None:
     Raises:
         OutputError: There is no result, or the server does not start.
     """
-    # PostgreSQL's own programs run in another folder.
-    data_dir = data_dir.resolve()
-    settings = settings_of({"data_dir": data_dir, "host": "127.0.0.1", "port": port, "log_format": "text"})
+    given = {"data_dir": data_dir, "host": "127.0.0.1", "port": port, "log_format": "text"}
     address = _running_at(data_dir)
     if address:
         _tell(f"the demo runs already: {address}")
         return
-    _fill(settings, child, results)
+    _fill(settings_of(given), child, results)
     _tell(f"sign in as {' or '.join(LOGINS)} with the password {PASSWORD}")
     if sys.stdout.isatty():
         _tell("Ctrl+C ends it")
-        serve({"data_dir": data_dir, "host": "127.0.0.1", "port": port, "log_format": "text"})
+        serve(given)
         return
     process = _start(data_dir, port)
     address = _wait_until_ready(process, data_dir)
@@ -68,7 +65,7 @@ def _running_at(data_dir: Path) -> str:
 def _fill(settings: Settings, child: str, results: Path) -> None:
     with service.running_database(settings) as (url, _):
         service.prepare(settings, url)
-        with closing(Database.open(url)) as database:
+        with service.opened(url) as database:
             add_demo_patients(database, open_store(settings), child, results)
 
 

@@ -9,11 +9,11 @@ from sqlalchemy.orm import Session
 
 from ..errors import OutputError
 from ..storage.files import FileStore
-from ..storage.models import Job, JobPatient, JobStatus, Result, ResultFile
-from ..storage.references import refer
+from ..storage.models import Job, JobStatus, Result
 from ..storage.schema import now
+from .queue import add_job
 from .request import JobRequest
-from .tasks import media_type
+from .results import add_result
 
 DOCUMENT = "result.json"
 SOLVED = "solved"
@@ -33,27 +33,12 @@ def import_result(session: Session, store: FileStore, request: JobRequest, folde
     """
     document = _document(folder)
     moment = now()
-    job = Job(
-        kind=request.kind,
-        input_hash=request.input_hash,
-        session_id=request.session_id,
-        created_by=request.created_by,
-        inputs=[each.as_json() for each in request.inputs],
-        settings=dict(request.settings),
-        status=JobStatus.SUCCEEDED,
-        attempt=1,
-        started_at=moment,
-        finished_at=moment,
-    )
-    session.add(job)
-    session.flush()
-    session.add_all(JobPatient(job_id=job.id, patient_id=patient) for patient in request.patients)
+    job = add_job(session, request, status=JobStatus.SUCCEEDED, attempt=1, started_at=moment, finished_at=moment)
     result = Result(
         job_id=job.id, kind=job.kind, session_id=job.session_id, attempt=1, **_facts(document), provenance=_origin(job)
     )
-    session.add(result)
-    session.flush()
-    _keep_files(session, store, result, folder)
+    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and not path.is_symlink()]
+    add_result(session, store, result, {path.relative_to(folder).as_posix(): store.put_file(path) for path in paths})
     return result
 
 
@@ -77,14 +62,3 @@ def _facts(document: Mapping[str, Any]) -> dict[str, Any]:
 
 def _origin(job: Job) -> dict[str, Any]:
     return {"inputs": job.inputs, "settings": job.settings, "worker": "command line", "attempt": 1}
-
-
-def _keep_files(session: Session, store: FileStore, result: Result, folder: Path) -> None:
-    paths = [path for path in sorted(folder.rglob("*")) if path.is_file() and not path.is_symlink()]
-    kept = {path.relative_to(folder).as_posix(): store.put_file(path) for path in paths}
-    for stored in sorted(kept.values(), key=lambda each: each.sha256):
-        refer(session, store, stored)
-    session.add_all(
-        ResultFile(result_id=result.id, name=name, media_type=media_type(name), sha256=stored.sha256, size=stored.size)
-        for name, stored in kept.items()
-    )

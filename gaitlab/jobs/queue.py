@@ -36,6 +36,14 @@ def submit(session: Session, request: JobRequest) -> tuple[Job, bool]:
     present = session.scalars(same).first()
     if present is not None:
         return present, False
+    job = add_job(session, request)
+    enqueue(session, job)
+    session.flush()
+    return job, True
+
+
+def add_job(session: Session, request: JobRequest, **state: Any) -> Job:
+    """The rows of a request, in no queue yet; `state` are further columns of the job."""
     job = Job(
         kind=request.kind,
         input_hash=request.input_hash,
@@ -45,13 +53,12 @@ def submit(session: Session, request: JobRequest) -> tuple[Job, bool]:
         settings=dict(request.settings),
         priority=request.priority,
         request_id=request.request_id,
+        **state,
     )
     session.add(job)
     session.flush()
     session.add_all(JobPatient(job_id=job.id, patient_id=patient) for patient in request.patients)
-    enqueue(session, job)
-    session.flush()
-    return job, True
+    return job
 
 
 def enqueue(session: Session, job: Job) -> None:

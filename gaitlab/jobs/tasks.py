@@ -1,7 +1,6 @@
 """Where a computation meets the database: files out of the store, a process, its result written once."""
 
 import asyncio
-import mimetypes
 import os
 import shutil
 import tempfile
@@ -19,19 +18,19 @@ from sqlalchemy.orm import Session
 from ..errors import StorageError
 from ..storage.database import Database
 from ..storage.files import FileStore, Stored
-from ..storage.models import Job, JobKind, JobStatus, Recording, Result, ResultFile, Subject
-from ..storage.references import refer, remove_unused
+from ..storage.models import Job, JobKind, JobStatus, Recording, Result, Subject
+from ..storage.references import remove_unused
 from ..storage.settings import Settings
 from . import metrics
 from .claims import Claim, beat, claim, end, requeue
 from .computing_process import OUTCOME
 from .request import OWNER, QUEUES, SOLVE, Work
+from .results import add_result
 from .supervision import PROCESS, Ended, Limits, Verdict, Watch, run_process
 
 Value = TypeVar("Value")
 RETRY_SECONDS = 1.0
 """Pause before a step is tried again when the database is away [s]."""
-MEDIA_TYPES = {".npz": "application/x-npz", ".urdf": "application/xml", ".parquet": "application/vnd.apache.parquet"}
 log = structlog.stdlib.get_logger()
 
 
@@ -168,8 +167,6 @@ class Runner:
         outcome = ended.outcome or {}
         if not end(session, claimed, JobStatus.SUCCEEDED):
             return False
-        for stored in sorted(files.values(), key=lambda each: each.sha256):
-            refer(session, self.store, stored)
         result = Result(
             job_id=job.id,
             kind=job.kind,
@@ -180,14 +177,7 @@ class Runner:
             summary=outcome["summary"],
             provenance=self._provenance(claimed, job, ended),
         )
-        session.add(result)
-        session.flush()
-        session.add_all(
-            ResultFile(
-                result_id=result.id, name=name, media_type=media_type(name), sha256=stored.sha256, size=stored.size
-            )
-            for name, stored in files.items()
-        )
+        add_result(session, self.store, result, files)
         _tell_owner(session, job, outcome, files)
         return True
 
@@ -232,12 +222,6 @@ class Runner:
     def _once(self, step: Callable[[Session], Value]) -> Value:
         with self.database.transaction() as session:
             return step(session)
-
-
-def media_type(name: str) -> str:
-    """Media type of a result's file."""
-    ending = Path(name).suffix
-    return MEDIA_TYPES.get(ending) or mimetypes.guess_type(name)[0] or "application/octet-stream"
 
 
 def _is_away(error: DBAPIError) -> bool:

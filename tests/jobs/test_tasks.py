@@ -13,7 +13,7 @@ from stored import make_visit
 from gaitlab.jobs.claims import claim, end
 from gaitlab.jobs.queue import cancel
 from gaitlab.jobs.request import OWNER
-from gaitlab.jobs.tasks import Runner, TryAgain, media_type
+from gaitlab.jobs.tasks import Runner, TryAgain
 from gaitlab.storage.audit import SYSTEM
 from gaitlab.storage.deletion import delete_patient
 from gaitlab.storage.models import Job, JobKind, JobStatus, Recording, Result, ResultFile, StoredFile, Subject
@@ -205,18 +205,6 @@ def test_a_body_gains_the_model_unless_its_measurements_changed(runner, visit, d
     run(runner, submit_job(database, visit, settings={"do": "model", "parameters": {"mass": 30.0}, OWNER: str(body)}))
     with database.sessions() as session:
         assert (session.get(Subject, body).model_sha256 is not None) is gained
-
-
-@pytest.mark.parametrize(
-    ("name", "kind"),
-    [
-        ("a/result.json", "application/json"),
-        ("walk.npz", "application/x-npz"),
-        ("x.unknown", "application/octet-stream"),
-    ],
-)
-def test_media_types(name, kind):
-    assert media_type(name) == kind
 
 
 def test_a_killed_process_is_a_crash_that_is_tried_again(runner, visit, database):
