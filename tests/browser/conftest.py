@@ -97,6 +97,16 @@ def page(stranger, clinic):
     return stranger
 
 
+def make_visit(page, pseudonym):
+    """A new patient and a visit of theirs, in the dialogs; the page shows the visit."""
+    page.get_by_role("button", name="New patient").click()
+    page.get_by_label("Pseudonym").fill(pseudonym)
+    page.get_by_role("button", name="Save").click()
+    page.get_by_role("button", name="New visit").click()
+    page.get_by_label("Condition").fill("barefoot")
+    page.get_by_role("button", name="Save").click()
+
+
 def sign_in(page, login):
     """As anybody of the clinic."""
     type_and_enter(page, login, PASSWORD)

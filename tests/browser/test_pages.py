@@ -6,7 +6,7 @@ from web_world import DEMO
 
 from gaitlab.storage.models import Job, JobStatus, Role
 
-from .conftest import sign_in
+from .conftest import make_visit, sign_in
 
 pytestmark = pytest.mark.slow
 CURVE = "Knee flexion over the gait cycle"
@@ -34,12 +34,7 @@ def test_after_signing_out_nothing_is_shown(page, clinic):
 
 
 def test_new_patient_visit_and_upload(page):
-    page.get_by_role("button", name="New patient").click()
-    page.get_by_label("Pseudonym").fill("P-9001")
-    page.get_by_role("button", name="Save").click()
-    page.get_by_role("button", name="New visit").click()
-    page.get_by_label("Condition").fill("barefoot")
-    page.get_by_role("button", name="Save").click()
+    make_visit(page, "P-9001")
     page.locator("input[type=file]").set_input_files([DEMO / "static.c3d", DEMO / "walk1.c3d"])
     page.get_by_test_id("recording").nth(1).wait_for()
     assert page.get_by_test_id("recording").count() == 2

@@ -9,7 +9,7 @@ from web_world import DEMO
 
 from gaitlab.storage.models import Role
 
-from .conftest import opened_page, sign_in
+from .conftest import make_visit, opened_page, sign_in
 
 pytestmark = pytest.mark.slow
 LONG_MS = 180_000
@@ -41,12 +41,7 @@ def drop(page, *paths):
 @pytest.fixture(scope="module")
 def dropped(page, tmp_path_factory):
     """A new visit into which a child's files were dropped, once the worker has read them; its address."""
-    page.get_by_role("button", name="New patient").click()
-    page.get_by_label("Pseudonym").fill("P-7001")
-    page.get_by_role("button", name="Save").click()
-    page.get_by_role("button", name="New visit").click()
-    page.get_by_label("Condition").fill("barefoot")
-    page.get_by_role("button", name="Save").click()
+    make_visit(page, "P-7001")
     note = tmp_path_factory.mktemp("folder") / "notes.txt"
     note.write_text("not for gaitlab")
     drop(page, DEMO / "static.c3d", DEMO / "walk1.c3d", note)

@@ -1,14 +1,16 @@
 /** One's own account: password and second factor. */
 import { useState } from "react";
-import { Badge, Button, Code, Group, Paper, PasswordInput, Stack, Text, TextInput, Title } from "@mantine/core";
+import { Badge, Button, Code, Group, Paper, Stack, Text, TextInput, Title } from "@mantine/core";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { renderSVG } from "uqr";
 import { client, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
+import { FormEnd } from "../app/FormEnd";
 import { Preferences } from "../app/Preferences";
 import { submitting } from "../app/submitting";
 import { useI18n } from "../i18n/I18n";
 import { ACCOUNT_KEY, useAccount } from "./Account";
+import { PasswordField } from "./PasswordField";
 
 export default function AccountPage() {
   const { t } = useI18n();
@@ -43,28 +45,9 @@ function Password() {
     <Paper withBorder p="md" component="form" onSubmit={submitting(change.mutate)}>
       <Stack>
         <Title order={2}>{t("changePassword")}</Title>
-        <PasswordInput
-          label={t("presentPassword")}
-          autoComplete="current-password"
-          required
-          value={before}
-          onChange={(event) => setBefore(event.currentTarget.value)}
-        />
-        <PasswordInput
-          label={t("newPassword")}
-          description={t("passwordHint")}
-          autoComplete="new-password"
-          required
-          value={wanted}
-          onChange={(event) => setWanted(event.currentTarget.value)}
-        />
-        <ErrorNote error={change.error} />
-        <Group justify="end">
-          {change.isSuccess && <Text role="status">{t("passwordChanged")}</Text>}
-          <Button type="submit" loading={change.isPending}>
-            {t("save")}
-          </Button>
-        </Group>
+        <PasswordField label="presentPassword" value={before} onChange={setBefore} />
+        <PasswordField label="newPassword" isNew value={wanted} onChange={setWanted} />
+        <FormEnd save={change}>{change.isSuccess && <Text role="status">{t("passwordChanged")}</Text>}</FormEnd>
       </Stack>
     </Paper>
   );

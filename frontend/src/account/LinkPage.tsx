@@ -1,6 +1,6 @@
 /** A one-time link: the first account, an invitation, or a new password. */
 import { useState } from "react";
-import { Button, PasswordInput, Text, TextInput, Title } from "@mantine/core";
+import { Button, Text, TextInput, Title } from "@mantine/core";
 import { useMutation, useQuery } from "@tanstack/react-query";
 import { useLocation } from "wouter";
 import { client, unwrap } from "../api/client";
@@ -8,6 +8,7 @@ import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
 import { useAccount } from "./Account";
 import { CardForm, LoginField } from "./CardForm";
+import { PasswordField } from "./PasswordField";
 
 export function LinkPage() {
   const { t } = useI18n();
@@ -51,14 +52,7 @@ export function LinkPage() {
           />
         </>
       )}
-      <PasswordInput
-        label={t("password")}
-        description={t("passwordHint")}
-        autoComplete="new-password"
-        required
-        value={password}
-        onChange={(event) => setPassword(event.currentTarget.value)}
-      />
+      <PasswordField label="password" isNew value={password} onChange={setPassword} />
       <ErrorNote error={accept.error} />
       <Button type="submit" loading={accept.isPending} disabled={!purpose.data}>
         {t("goOn")}

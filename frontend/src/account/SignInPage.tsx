@@ -1,5 +1,5 @@
 import { useState } from "react";
-import { Alert, Button, PasswordInput, Text, TextInput, Title } from "@mantine/core";
+import { Alert, Button, Text, TextInput, Title } from "@mantine/core";
 import { useMutation, useQuery } from "@tanstack/react-query";
 import { client, Problem, unwrap } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
@@ -7,6 +7,7 @@ import { Preferences } from "../app/Preferences";
 import { useI18n } from "../i18n/I18n";
 import { useAccount } from "./Account";
 import { CardForm, LoginField } from "./CardForm";
+import { PasswordField } from "./PasswordField";
 
 export function SignInPage() {
   const { t } = useI18n();
@@ -29,13 +30,7 @@ export function SignInPage() {
       </div>
       {methods.data?.first_account_needed && <Alert color="yellow">{t("firstAccountNeeded")}</Alert>}
       <LoginField value={login} onChange={setLogin} />
-      <PasswordInput
-        label={t("password")}
-        autoComplete="current-password"
-        required
-        value={password}
-        onChange={(event) => setPassword(event.currentTarget.value)}
-      />
+      <PasswordField label="password" value={password} onChange={setPassword} />
       {(needsCode || code) && (
         <TextInput
           label={t("code")}

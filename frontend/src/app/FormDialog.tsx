@@ -1,16 +1,15 @@
 /** A dialog with fields, what went wrong, and a button that saves. */
 import type { ReactNode } from "react";
-import { Button, Group, Modal, Stack } from "@mantine/core";
+import { Modal, Stack } from "@mantine/core";
 import { useI18n } from "../i18n/I18n";
-import { ErrorNote } from "./ErrorNote";
+import { FormEnd, type Saving } from "./FormEnd";
 import { submitting } from "./submitting";
 
 interface Props {
   title: string;
   opened: boolean;
   onClose: () => void;
-  /** What saving does, and how it stands. */
-  save: { mutate: () => void; error: unknown; isPending: boolean };
+  save: Saving;
   children: ReactNode;
 }
 
@@ -21,12 +20,7 @@ export function FormDialog({ title, opened, onClose, save, children }: Props) {
       <form onSubmit={submitting(save.mutate)}>
         <Stack>
           {children}
-          <ErrorNote error={save.error} />
-          <Group justify="end">
-            <Button type="submit" loading={save.isPending}>
-              {t("save")}
-            </Button>
-          </Group>
+          <FormEnd save={save} />
         </Stack>
       </form>
     </Modal>

@@ -4,7 +4,7 @@ import { Button, Group, Paper, SimpleGrid, Stack, Table, Text, Textarea, TextInp
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { useAccount } from "../account/Account";
 import { client, ifMatch, unwrap, type Schemas } from "../api/client";
-import { ErrorNote } from "../app/ErrorNote";
+import { FormEnd } from "../app/FormEnd";
 import { RowsEditor, type Row } from "../app/RowsEditor";
 import { submitting } from "../app/submitting";
 import { useI18n, type Key } from "../i18n/I18n";
@@ -157,15 +157,11 @@ function Editor({ visit, entries, onDone }: { visit: Visit; entries: Entries; on
           value={(edited.notes ?? []).join("\n")}
           onChange={(event) => setEdited({ ...edited, notes: event.currentTarget.value.split("\n").filter(Boolean) })}
         />
-        <ErrorNote error={save.error} />
-        <Group justify="end">
+        <FormEnd save={save}>
           <Button variant="default" onClick={onDone}>
             {t("cancel")}
           </Button>
-          <Button type="submit" loading={save.isPending}>
-            {t("save")}
-          </Button>
-        </Group>
+        </FormEnd>
       </Stack>
     </form>
   );
