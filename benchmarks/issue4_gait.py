@@ -16,7 +16,6 @@ from gaitlab.nlp.sensitivity import Sensitivity
 from gaitlab.nlp.workers import worker_pool
 from gaitlab.pipelines.gait_benchmark import solve_case
 from gaitlab.pipelines.gait_cases import GaitCase, available_cases, load_case
-from gaitlab.walking.gait_guess import smooth_states
 from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait
 
 SEEDS = 50
@@ -136,7 +135,7 @@ def _regridded(case: GaitCase, n: int) -> GaitLevel:
     sizes = [int(k) for k in np.round(shares * n)]
     sizes[1] += n - sum(sizes)
     n_q, states = case.gait.subject.n_q, list[np.ndarray]()
-    guess = smooth_states(case.gait.states, case.gait.durations, case.measured(0.0, 0).q)
+    guess = GaitLevel(case.gait, case.measured(0.0, 0)).first
     for x, duration, k in zip(guess, case.gait.durations, sizes, strict=True):
         spline = CubicHermiteSpline(np.linspace(0.0, duration, len(x)), x[:, :n_q], x[:, n_q:])
         times = np.linspace(0.0, duration, k + 1)

@@ -13,6 +13,7 @@ from ..errors import NotConverged
 from ..nlp.sparse_solution import Status
 from ..nlp.workers import Workers
 from ..walking.criteria import THESIS
+from ..walking.gait_search import first_estimate
 from ..walking.point_foot_gait import GaitLevel, GaitOptimum
 from .gait_cases import GaitCase
 
@@ -91,8 +92,7 @@ def solve_case(
 ) -> GaitRun:
     """Weights from simulated measurements, from start weights, shape (4,), equal ones by default.
 
-    The optimal gait for the start weights is found by tracking the measurements first. Workers solve the stages side
-    by side.
+    Workers solve the stages side by side.
 
     Raises:
         NotConverged: The lower level is not solved for the first weights.
@@ -101,7 +101,7 @@ def solve_case(
     measured = case.measured(noise, seed)
     began = time.perf_counter()
     level = GaitLevel(case.gait, measured, workers=workers)
-    first = level.from_measurements(theta)
+    theta, first = first_estimate(level, theta)
     status = first.solution.status
     if status is not Status.SOLVED:
         raise NotConverged(f"{case.gait.name}: no optimal gait for the first weights: {status}")

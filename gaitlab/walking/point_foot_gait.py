@@ -33,7 +33,7 @@ from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem
 from .arcs import ArcTask, solve_in_turn
 from .contact_schedule import thesis_stages
 from .criteria import ALL, THESIS
-from .gait_guess import smooth_states
+from .gait_guess import Curves, StandingPoints, smooth_states
 from .model import POINTS, ROOT, walking_functions
 from .tracking import N_FORCES
 
@@ -50,10 +50,9 @@ CALM = 0.01
 """Weight [s^2] of errors of the velocities of the first guess beside those of the coordinates, while tracking: it keeps
 the nodes from ringing."""
 
-PATH = (10.0, 1.0, 0.1, 0.0)
-"""Weights of half the mean squared residual on the way from the measurements to the optimal gait."""
-WAY = (10.0, 0.5, 0.05, 0.0)
-"""The same from the tracked motion for other weights of the criteria."""
+PATH = (10.0, 0.3, 0.02)
+"""Weights of half the mean squared residual on the way from the measurements to the optimal gait. At the last the motion
+is still near the measurements for any weights, and already tells what they must be."""
 PATIENCE = 60
 """Iterations granted on such a way."""
 
@@ -214,7 +213,7 @@ class GaitLevel:
         Workers solve the stages side by side.
         """
         self.workers, self._key = workers, uuid4().hex
-        self._tracked: dict[int, SparseSolution] = {}
+        self._tracked: GaitOptimum | None = None
         self.gait, self.measured, self.settings = gait, measured, settings or GaitLevelSettings()
         self.indices = [list(ALL).index(name) for name in THESIS]
         self.n_q = gait.subject.n_q
@@ -222,7 +221,7 @@ class GaitLevel:
         self.layout = layout_of(subject)
         self.p = np.concatenate([parameter_vector(subject), np.zeros(3 * (self.n_q - ROOT))])
         self.running_scale = [1.0 / (gait.normalisers * duration) for duration in gait.durations]
-        self.first = smooth_states(gait.states, gait.durations, measured.q) if first is None else first
+        self.first = first if first is not None else tuple(self._smoothed(k) for k in range(len(gait.durations)))
         self.structures = tuple(self._structure(k) for k in range(len(gait.durations)))
 
     @property
@@ -270,33 +269,39 @@ class GaitLevel:
     def respond(self, theta: np.ndarray, start: SparseSolution) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), from a nearby solution.
 
-        Stages for which it is not near go the way from the tracked motion, if `from_measurements` has found one.
+        Stages for which it is not near go the way from the tracked motion, if `track` has found one.
         """
         problems, near = self.problems(theta), replace(self.settings.solver, max_iter=NEARBY)
         found = self._solve(problems, dict(enumerate(self.split(start))), (near,))
         lost = [k for k, x in found.items() if x.status is not Status.SOLVED]
-        if lost and self._tracked:
-            found |= self._along(theta, WAY, {k: self._tracked[k] for k in lost})
+        if lost and self._tracked is not None:
+            starts = {k: self._tracked.solutions[k] for k in lost}
+            for tracking in (*PATH[1:], 0.0):
+                starts = self._solve(self.problems(theta, tracking), starts, self._patient)
+            found |= starts
         elif lost:
             found |= self._solve(problems, {k: found[k] for k in lost}, self._far)
         return GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
 
-    def from_measurements(self, theta: np.ndarray, path: Sequence[float] = PATH) -> GaitOptimum:
+    def from_measurements(self, theta: np.ndarray) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), from the measurements: tracking first, then less, at last none."""
-        problems = self.problems(theta, path[0])
-        guesses = {k: self._guess(problem, k) for k, problem in enumerate(problems)}
-        self._tracked = self._solve(problems, guesses, self._far)
-        found = self._along(theta, path[1:], self._tracked)
-        return GaitOptimum(self, self.problems(theta, path[-1]), [found[k] for k in range(len(problems))])
+        return self.follow(theta, 0.0, self.track(theta))
 
-    def _along(
-        self, theta: np.ndarray, path: Sequence[float], starts: dict[int, SparseSolution]
-    ) -> dict[int, SparseSolution]:
-        """Follow the optima of some stages along weights of tracking."""
-        patient = replace(self.settings.solver, max_iter=PATIENCE)
-        for tracking in path:
-            starts = self._solve(self.problems(theta, tracking), starts, (patient, *self._far))
-        return starts
+    def track(self, theta: np.ndarray) -> GaitOptimum:
+        """The motion near the measurements for theta, shape (n_theta,), with the last weight of tracking of `PATH`."""
+        problems = self.problems(theta, PATH[0])
+        found = self._solve(problems, {k: self._guess(problem, k) for k, problem in enumerate(problems)}, self._far)
+        self._tracked = GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
+        tracked = self._tracked
+        for tracking in PATH[1:]:
+            tracked = self.follow(theta, tracking, tracked)
+        return tracked
+
+    def follow(self, theta: np.ndarray, tracking: float, start: GaitOptimum) -> GaitOptimum:
+        """Solve for theta, shape (n_theta,), and a weight of tracking from an optimum for others."""
+        problems = self.problems(theta, tracking)
+        found = self._solve(problems, dict(enumerate(start.solutions)), self._patient)
+        return GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
 
     def from_forces(self, theta: np.ndarray, forces: Sequence[np.ndarray]) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), from the first states and forces of the floor at the Gauss points.
@@ -319,6 +324,10 @@ class GaitLevel:
             x = Iterate(w, np.ones(s.n_c), np.zeros(s.n_g), np.zeros(s.n_c))
             found.append(certify(problem, x, mu=1.0, iterations=0, status=Status.ITERATION_LIMIT))
         return GaitOptimum(self, problems, found)
+
+    @property
+    def _patient(self) -> tuple[InteriorPoint, ...]:
+        return (replace(self.settings.solver, max_iter=PATIENCE), *self._far)
 
     @property
     def _far(self) -> tuple[InteriorPoint, ...]:
@@ -354,6 +363,14 @@ class GaitLevel:
         cuts = np.cumsum([s.n_c for s in sizes])[:-1]
         s, lam_c = np.split(x.s, cuts), np.split(x.lam_c, cuts)
         return [replace(x, w=a, s=b, lam_g=c, lam_c=d) for a, b, c, d in zip(w, s, lam_g, lam_c, strict=True)]
+
+    def _smoothed(self, k: int) -> np.ndarray:
+        """Smoothed measurements of a stage, its standing point in place, shape (N_k + 1, 2 n_q)."""
+        gait, q = self.gait, self.measured.q[k]
+        curves = Curves(ends=gait.states[k], duration=gait.durations[k], n=gait.n_intervals[k])
+        functions = walking_functions(self.layout).functions
+        standing = StandingPoints(functions=functions, p=self.p, active=gait.stages[k].active)
+        return smooth_states(curves, q, self.measured.deviation, standing)
 
     def _guess(self, problem: MechanicalProblem, k: int) -> np.ndarray:
         """First guess of a stage: smoothed measurements, and the forces of the floor that balance them best."""
