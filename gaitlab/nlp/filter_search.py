@@ -13,6 +13,8 @@ GAMMA = 1e-5
 """Margin of the filter envelope (their gamma_theta, gamma_phi)."""
 ETA = 1e-4
 """Armijo factor (their eta_phi; 1e-8 there)."""
+LARGEST = 1e4
+"""Violation that is allowed in units of the first one, or of one (their theta_max)."""
 SHORTEST = 1e-4
 """Steps below this fraction call for another regularisation instead."""
 
@@ -30,11 +32,13 @@ class Merit:
 class Filter:
     """Pairs (violation, barrier) that new points must improve on."""
 
+    largest: float = np.inf
+    """No point with a larger violation is accepted (their theta_max)."""
     entries: list[tuple[float, float]] = field(default_factory=list[tuple[float, float]])
 
     def accepts(self, merit: Merit, noise: float = 0.0) -> bool:
         """Whether no stored pair dominates the point; barrier functions differ if by more than noise."""
-        return all(
+        return merit.violation <= self.largest and all(
             merit.violation <= (1.0 - GAMMA) * violation or merit.barrier - noise <= barrier - GAMMA * violation
             for violation, barrier in self.entries
         )

@@ -1,7 +1,7 @@
-"""Primal-dual interior-point method for problems whose KKT system is banded in time.
+"""Primal-dual interior-point method for problems whose KKT system is block tridiagonal in time.
 
 Line-search filter method of Wächter and Biegler (Math. Program. 106, 2006) with slacks for the inequalities, the
-inertia corrected after a block elimination along time, and one banded LU factorisation per iteration. The final
+inertia corrected, and one elimination along time per iteration that gives inertia and step. The final
 barrier parameter is a setting: a small positive one makes the solution a smooth function of the problem's parameters,
 which sensitivities rely on.
 """
@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .banded import kkt_assembly
-from .filter_search import Filter, Merit, backtrack
+from .kkt_matrix import KKTFactors, kkt_assembly
+from .filter_search import LARGEST, Filter, Merit, backtrack
 from .sparse_problem import Derivatives, SparseProblem, Values, multiply, multiply_transposed
 from .sparse_solution import SparseSolution, Status, certify
 
@@ -71,6 +71,9 @@ class InteriorPoint:
     fraction_to_boundary: float = 0.99
     delta_first: float = 1e-4
     """First multiple of the identity tried where the Lagrangian is not convex."""
+    gauss_newton: bool = False
+    """Where it is not convex use the Gauss-Newton part of the objective, if the problem has one: long steps far from a
+    solution that follows measurements, short ones near a solution whose constraints are curved."""
 
     def solve(
         self,
@@ -97,12 +100,15 @@ class _Run:
         self.mu = method.mu_initial
         self.delta, self.last_delta, self.delta_g = 0.0, 0.0, 0.0
         self.tiny_steps = 0
+        self.largest = np.inf
         self.filter = Filter()
 
     def solve(self, start: SparseSolution | np.ndarray) -> SparseSolution:
         """Iterate until converged, stalled or out of iterations."""
         x = self._first(start)
         values = self.problem.values(x.w)
+        self.largest = LARGEST * max(1.0, Merit(values, x.s, self.mu).violation)
+        self.filter = Filter(self.largest)
         for iteration in range(self.method.max_iter + 1):
             derivatives = self.problem.derivatives(x.w, x.lam_g, x.lam_c)
             if not _finite(values, derivatives):
@@ -141,7 +147,7 @@ class _Run:
             if self._error(x, values, derivatives, self.mu) > method.kappa_error * self.mu:
                 return
             self.mu = max(method.mu_final, min(method.mu_linear * self.mu, self.mu**method.mu_power))
-            self.filter = Filter()
+            self.filter = Filter(self.largest)
 
     def _stationarity(self, x: Iterate, derivatives: Derivatives) -> np.ndarray:
         s = self.structure
@@ -177,44 +183,53 @@ class _Run:
     def _direction(self, x: Iterate, values: Values, derivatives: Derivatives) -> Step | None:
         """Newton direction of a problem made convex on the null space of the constraints, or None."""
         sigma = x.lam_c / x.s
-        band = self.assembly.band((derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma)
-        delta = self._convexify(band)
+        matrix = self.assembly.matrix((derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma)
+        if self.method.gauss_newton and derivatives.convex is not None and not self._is_convex(matrix):
+            matrix = self.assembly.matrix((derivatives.convex(), derivatives.jac_g, derivatives.jac_c), sigma)
+        delta, factors = self._convexify(matrix)
         for delta_g in DEPENDENT[DEPENDENT.index(self.delta_g) :]:
-            factors = self.assembly.factorise(self.assembly.shifted(band, (delta, delta_g)))
-            if factors is not None:
-                step = self._solve_newton(x, values, derivatives, factors.solve)
-                if np.all(np.isfinite(step.w)):
-                    return step
+            if delta_g != self.delta_g or factors is None:
+                factors = self.assembly.factorise(self.assembly.shifted(matrix, (delta, delta_g)))
+            step = None if factors is None else self._solve_newton(x, values, derivatives, factors)
+            if step is not None:
+                return step
         return None
 
-    def _convexify(self, band: np.ndarray) -> float:
-        """Smallest multiple of the identity, within a factor, that gives the right inertia."""
-        delta = self._right_inertia(band)
+    def _is_convex(self, matrix: np.ndarray) -> bool:
+        factors = self.assembly.factorise(self.assembly.shifted(matrix, (self.delta, self.delta_g)))
+        return factors is not None and factors.negative_eigenvalues == self.structure.n_g
+
+    def _convexify(self, matrix: np.ndarray) -> tuple[float, KKTFactors | None]:
+        """Smallest multiple of the identity, within a factor, that gives the right inertia, and the factors then."""
+        delta, factors = self._right_inertia(matrix)
         if delta >= LARGEST_DELTA > self.delta and self.delta_g == 0.0:
             # Dependent equations: no delta_w helps, and from here on the multipliers are regularised instead.
             self.delta_g = DEPENDENT[2]
-            delta = self._right_inertia(band)
+            delta, factors = self._right_inertia(matrix)
         if delta > self.delta:
             # What only the line search asked for is forgotten: it would grow from iteration to iteration.
             self.last_delta = delta
-        return delta
+        return delta, factors
 
-    def _right_inertia(self, band: np.ndarray) -> float:
+    def _right_inertia(self, matrix: np.ndarray) -> tuple[float, KKTFactors | None]:
         delta, n_g = self.delta, self.structure.n_g
         while delta < LARGEST_DELTA:
-            if self.assembly.negative_eigenvalues(self.assembly.shifted(band, (delta, self.delta_g))) == n_g:
-                break
+            factors = self.assembly.factorise(self.assembly.shifted(matrix, (delta, self.delta_g)))
+            if factors is not None and factors.negative_eigenvalues == n_g:
+                return delta, factors
             delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
-        return delta
+        return delta, None
 
     def _solve_newton(
-        self, x: Iterate, values: Values, derivatives: Derivatives, solve: Callable[[np.ndarray], np.ndarray]
-    ) -> Step:
+        self, x: Iterate, values: Values, derivatives: Derivatives, factors: KKTFactors
+    ) -> Step | None:
         st = self.structure
         residual_c = values.c - x.s
         pull = self.mu / x.s - x.lam_c - x.lam_c / x.s * residual_c
         top = -self._stationarity(x, derivatives) + multiply_transposed(st.jac_c, derivatives.jac_c, pull, st.n_w)
-        solution = solve(np.concatenate([top, -values.g]))
+        solution = factors.solve(np.concatenate([top, -values.g]))
+        if solution is None:
+            return None
         dw, dlam = solution[: st.n_w], solution[st.n_w :]
         ds = multiply(st.jac_c, derivatives.jac_c, dw, st.n_c) + residual_c
         return Step(dw, ds, dlam, self.mu / x.s - x.lam_c - x.lam_c / x.s * ds)
@@ -246,18 +261,17 @@ class _Run:
             return None
         plain = derivatives._replace(grad=np.zeros_like(x.w), hess=np.zeros_like(derivatives.hess))
         calm = x._replace(lam_g=np.zeros_like(x.lam_g))
-        band = self.assembly.band((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s)
-        band = self.assembly.shifted(band, (1.0, 1e-10))
-        factors = self.assembly.factorise(band)
-        if factors is None:
+        matrix = self.assembly.matrix((plain.hess, plain.jac_g, plain.jac_c), x.lam_c / x.s)
+        factors = self.assembly.factorise(self.assembly.shifted(matrix, (1.0, 1e-10)))
+        step = None if factors is None else self._solve_newton(calm, values, plain, factors)
+        if step is None:
             return None
-        step = self._solve_newton(calm, values, plain, factors.solve)
         alpha = _largest(x.s, step.s, self.method.fraction_to_boundary)
         for _ in range(20):
             w, s = x.w + alpha * step.w, x.s + alpha * step.s
             new = self.problem.values(w)
             if Merit(new, s, self.mu).violation < (1.0 - 1e-2 * alpha) * before:
-                self.filter = Filter()
+                self.filter = Filter(self.largest)
                 return Iterate(w, s, x.lam_g, np.clip(x.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s)), new
             alpha /= 2.0
         return None

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import NotConverged
-from .banded import BandedLU, kkt_assembly
+from .kkt_matrix import KKTFactors, kkt_assembly
 from .sparse_problem import Derivatives, SparseProblem, multiply, multiply_transposed
 from .sparse_solution import SparseSolution
 
@@ -24,13 +24,13 @@ class Sensitivity:
         self.assembly = kkt_assembly(self.structure)
         self.sigma = solution.lam_c / solution.s
         self.derivatives: Derivatives = problem.derivatives(solution.w, solution.lam_g, solution.lam_c)
-        self._band = self.assembly.band(
+        self._matrix = self.assembly.matrix(
             (self.derivatives.hess, self.derivatives.jac_g, self.derivatives.jac_c), self.sigma
         )
 
     def is_minimum(self) -> bool:
         """Second-order sufficiency: the reduced Hessian is positive definite (inertia of the KKT matrix)."""
-        return self.assembly.negative_eigenvalues(self._band) == self.structure.n_g
+        return self._factors is not None and self._factors.negative_eigenvalues == self.structure.n_g
 
     def of_objective(self, mixed: np.ndarray) -> np.ndarray:
         """Derivative of (w, lam_g) when grad f moves by `mixed`, shape (n_w, m); result (n_w + n_g, m).
@@ -49,17 +49,17 @@ class Sensitivity:
         s, weighted = self.structure, self.sigma[:, None] * inequalities
         pressed = [multiply_transposed(s.jac_c, self.derivatives.jac_c, column, s.n_w) for column in weighted.T]
         top = mixed + np.stack(pressed, axis=1)
-        return self._factors.solve(-np.concatenate([top, equalities]))
-
-    @cached_property
-    def _factors(self) -> BandedLU:
-        factors = self.assembly.factorise(self._band.copy())
-        if factors is None:
+        moves = None if self._factors is None else self._factors.solve(-np.concatenate([top, equalities]))
+        if moves is None:
             raise NotConverged(
                 "the optimality conditions of this solution are singular, so it has no sensitivities; "
                 "its constraints depend on each other or it is no strict minimum"
             )
-        return factors
+        return moves
+
+    @cached_property
+    def _factors(self) -> KKTFactors | None:
+        return self.assembly.factorise(self._matrix)
 
     def slack_moves(self, direction: np.ndarray) -> np.ndarray:
         """J_c dw for a direction of (w, lam_g), shape (n_w + n_g,); result (n_c,)."""

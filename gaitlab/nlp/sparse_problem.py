@@ -1,5 +1,6 @@
 """Sparse nonlinear programs whose unknowns can be ordered along time."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -36,6 +37,8 @@ class Derivatives(NamedTuple):
     """Entries of the Jacobian of c, shape (nnz_c,)."""
     hess: np.ndarray
     """Entries of the Hessian of f + lam_g' g - lam_c' c, both triangles, shape (nnz_h,)."""
+    convex: Callable[[], np.ndarray] | None = None
+    """Entries of its positive semidefinite part, where the problem knows one: the Gauss-Newton part of f."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

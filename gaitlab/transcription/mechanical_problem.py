@@ -236,7 +236,7 @@ class MechanicalProblem:
         """First and second derivatives at w, shape (n_w,), multipliers (n_g,) and (n_c,)."""
         s, d = self.shared, self.data
         n_residual = 2 * s.layout.n_intervals * s.layout.n_r
-        jac, grad, hess = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(s.residual_shape[:2]))
+        jac, grad, hess, convex = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(s.residual_shape[:2]))
         mu = self._node_multipliers(
             lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)]
         )
@@ -244,18 +244,26 @@ class MechanicalProblem:
         jac_r = np.swapaxes(self.to_local(jac), 1, 2)  # (2 N, n_r, n_z)
         kept, unit = np.broadcast_to((s.point_index >= 0)[:, None, :], jac_r.shape), np.ones(len(s.limits))
         jac_g = [jac_r[kept], self._contact_entries(s.contact_terms, contact_jac), np.ones(len(s.fixed_columns))]
-        hess_local = self.to_local(np.swapaxes(self.to_local(hess), 1, 2))
         return Derivatives(
             grad=self._gradient(w, grad),
             jac_g=np.concatenate(jac_g),
             jac_c=np.concatenate([s.cone[2], self._contact_entries(s.clear_terms, contact_jac), unit, -unit]),
-            hess=np.concatenate([hess_local[s.hessian_kept], contact_hess.ravel(), self._diagonal()]),
+            hess=self._hessian_entries(hess, contact_hess),
+            convex=lambda: self._hessian_entries(convex, np.zeros_like(contact_hess)),
         )
 
-    def _point_derivatives(self, z: np.ndarray, lam: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Transposed residual Jacobian, cost gradient and Hessian of the Lagrangian in (q, v, a, f) at each point.
+    def _hessian_entries(self, points: np.ndarray, nodes: np.ndarray) -> np.ndarray:
+        """Entries for Hessians in (q, v, a, f) at the Gauss points and in the states at the nodes."""
+        local = self.to_local(np.swapaxes(self.to_local(points), 1, 2))
+        return np.concatenate([local[self.shared.hessian_kept], nodes.ravel(), self._diagonal()])
 
-        With xi = (y, v) and the weighted cost phi(xi): gradient J' phi', Hessian J' phi'' J + sum_i phi'_i y_i''.
+    def _point_derivatives(
+        self, z: np.ndarray, lam: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Transposed residual Jacobian, cost gradient, Hessian of the Lagrangian in (q, v, a, f), its convex part.
+
+        With xi = (y, v) and the weighted cost phi(xi): gradient J' phi', Hessian J' phi'' J + sum_i phi'_i y_i''; the
+        first term is convex as the criteria are.
         """
         s, d = self.shared, self.data
         n_q, n_y = s.layout.n_q, s.evaluate["outputs"].function.numel_out(0)
@@ -267,13 +275,14 @@ class MechanicalProblem:
         jac[:, n_q : 2 * n_q, n_y:] = np.eye(n_q)
         mu = slope[:, :n_y].copy()
         mu[:, : s.layout.n_r] += lam
-        hess = s.evaluate["output_hessian"](z, d.p, mu)[0] + jac @ curvature @ np.swapaxes(jac, 1, 2)
+        convex = jac @ curvature @ np.swapaxes(jac, 1, 2)
         gradient = (jac @ slope[:, :, None])[:, :, 0]
         smooth = s.weights[:, None] * d.acceleration_weights
         gradient[:, 2 * n_q : 3 * n_q] += smooth * z[:, 2 * n_q : 3 * n_q]
         diagonal = np.arange(2 * n_q, 3 * n_q)
-        hess[:, diagonal, diagonal] += smooth
-        return jac[:, :, : s.layout.n_r], gradient, hess
+        convex[:, diagonal, diagonal] += smooth
+        hess = s.evaluate["output_hessian"](z, d.p, mu)[0] + convex
+        return jac[:, :, : s.layout.n_r], gradient, hess, convex
 
     def criterion_gradients(self, w: np.ndarray) -> np.ndarray:
         """Gradients of the integrated criteria, shape (n_w, n_criteria)."""

@@ -50,10 +50,10 @@ CALM = 0.01
 """Weight [s^2] of errors of the velocities of the first guess beside those of the coordinates, while tracking: it keeps
 the nodes from ringing."""
 
-PATH = (10.0, 0.3, 0.02)
+PATH = (10.0, 1.0, 0.1)
 """Weights of half the mean squared residual on the way from the measurements to the optimal gait. At the last the motion
 is still near the measurements for any weights, and already tells what they must be."""
-PATIENCE = 60
+PATIENCE = 40
 """Iterations granted on such a way."""
 
 NEAR_BARRIER = 1e-5
@@ -290,7 +290,9 @@ class GaitLevel:
     def track(self, theta: np.ndarray) -> GaitOptimum:
         """The motion near the measurements for theta, shape (n_theta,), with the last weight of tracking of `PATH`."""
         problems = self.problems(theta, PATH[0])
-        found = self._solve(problems, {k: self._guess(problem, k) for k, problem in enumerate(problems)}, self._far)
+        convex = replace(self._far[0], gauss_newton=True, max_iter=PATIENCE)
+        guesses = {k: self._guess(problem, k) for k, problem in enumerate(problems)}
+        found = self._solve(problems, guesses, (convex, *self._far))
         self._tracked = GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
         tracked = self._tracked
         for tracking in PATH[1:]:

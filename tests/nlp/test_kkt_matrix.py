@@ -1,10 +1,10 @@
-"""Assembly, factorisation and inertia of banded KKT systems against dense linear algebra."""
+"""Assembly, factorisation and inertia of block tridiagonal KKT systems against dense linear algebra."""
 
 import numpy as np
 import pytest
 
 from gaitlab.errors import ProblemError
-from gaitlab.nlp.banded import KKTAssembly
+from gaitlab.nlp.kkt_matrix import KKTAssembly
 from gaitlab.nlp.sparse_problem import Pattern, SparseStructure, multiply, multiply_transposed, pairs_in_rows
 
 N_STAGES, N_X, N_G, N_C = 7, 4, 2, 3
@@ -69,7 +69,7 @@ def chain(request):
 @pytest.mark.parametrize("delta", [(0.0, 0.0), (2.0, 1e-2)])
 def test_solve(chain, delta):
     assembly = KKTAssembly(chain.structure)
-    factors = assembly.factorise(assembly.shifted(assembly.band(chain.entries(), chain.sigma), delta))
+    factors = assembly.factorise(assembly.shifted(assembly.matrix(chain.entries(), chain.sigma), delta))
     dense = chain.dense(delta)
     for shape in [(len(dense),), (len(dense), 3)]:
         rhs = chain.generator.normal(size=shape)
@@ -80,9 +80,8 @@ def test_solve(chain, delta):
 def test_negative_eigenvalues(chain, delta):
     assembly = KKTAssembly(chain.structure)
     expected = int(np.sum(np.linalg.eigvalsh(chain.dense(delta)) < 0.0))
-    assert (
-        assembly.negative_eigenvalues(assembly.shifted(assembly.band(chain.entries(), chain.sigma), delta)) == expected
-    )
+    factors = assembly.factorise(assembly.shifted(assembly.matrix(chain.entries(), chain.sigma), delta))
+    assert factors.negative_eigenvalues == expected
     if delta[0] == 100.0:
         assert expected == chain.structure.n_g
 
@@ -94,8 +93,8 @@ def test_the_order_along_time_makes_the_band_narrow(chain):
 @pytest.mark.parametrize("value", [0.0, np.nan, np.inf])
 def test_singular_and_infinite_matrices_have_no_factors(chain, value):
     assembly = KKTAssembly(chain.structure)
-    band = assembly.band((0 * chain.hess, 0 * chain.jac_g, 0 * chain.jac_c), chain.sigma)
-    assert assembly.factorise(band + value) is None
+    matrix = assembly.matrix((0 * chain.hess, 0 * chain.jac_g, 0 * chain.jac_c), chain.sigma)
+    assert assembly.factorise(matrix + value) is None
 
 
 def test_products_with_sparse_matrices(chain):
@@ -113,7 +112,8 @@ def test_diagonal_matrices():
     settings = {"n_w": 3, "n_g": 0, "n_c": 0, "jac_g": none, "jac_c": none, "order": i, "blocks": np.array([3])}
     assembly = KKTAssembly(SparseStructure(hess=Pattern(i, i), **settings))
     for diagonal, expected in [([4.0, 1.0, 1.0], 0), ([4.0, -1.0, -1.0], 2)]:
-        assert assembly.negative_eigenvalues(assembly.band((np.array(diagonal), nothing, nothing), nothing)) == expected
+        factors = assembly.factorise(assembly.matrix((np.array(diagonal), nothing, nothing), nothing))
+        assert factors.negative_eigenvalues == expected
 
 
 def test_orders_that_are_no_permutations_are_refused(chain):
