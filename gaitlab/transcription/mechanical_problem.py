@@ -275,7 +275,10 @@ class MechanicalProblem:
         jac[:, n_q : 2 * n_q, n_y:] = np.eye(n_q)
         mu = slope[:, :n_y].copy()
         mu[:, : s.layout.n_r] += lam
-        convex = jac @ curvature @ np.swapaxes(jac, 1, 2)
+        # Most outputs and velocities are in no criterion.
+        used = np.flatnonzero(np.any(curvature != 0.0, axis=(0, 1)))
+        by_used = jac[:, :, used]
+        convex = by_used @ curvature[:, used][:, :, used] @ np.swapaxes(by_used, 1, 2)
         gradient = (jac @ slope[:, :, None])[:, :, 0]
         smooth = s.weights[:, None] * d.acceleration_weights
         gradient[:, 2 * n_q : 3 * n_q] += smooth * z[:, 2 * n_q : 3 * n_q]
