@@ -16,7 +16,8 @@ from gaitlab.nlp.sensitivity import Sensitivity
 from gaitlab.nlp.workers import worker_pool
 from gaitlab.pipelines.gait_benchmark import solve_case
 from gaitlab.pipelines.gait_cases import GaitCase, available_cases, load_case
-from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait
+from gaitlab.walking.gait_data import MeasuredGait
+from gaitlab.walking.point_foot_gait import GaitLevel
 
 SEEDS = 50
 SIZES = (31, 62, 124, 248, 496, 992)

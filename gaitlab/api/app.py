@@ -3,12 +3,11 @@
 from collections.abc import AsyncGenerator, Callable, Sequence
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
-from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
 import anyio.to_thread
-from fastapi import APIRouter, FastAPI
+from fastapi import FastAPI
 from prometheus_client import REGISTRY
 from sqlalchemy import select
 from starlette.middleware.gzip import GZipMiddleware
@@ -24,10 +23,10 @@ from ..storage.settings import Settings
 from .authentication import is_alive
 from .headers import SecurityHeaders
 from .observation import Observation
-from .openapi import document, operation_id
+from .openapi import document
 from .origin import OwnPagesOnly
 from .pages import FRONTEND, Frontend
-from .problems import add_handlers, documented
+from .problems import add_handlers
 from .routes import (
     analyses,
     attachments,
@@ -48,27 +47,27 @@ from .routes import (
     users,
     viewers,
 )
+from .routing import PREFIX, add_routes
 from .services import Services
 from .viewers import Limits, Owner, Viewers
 
-PREFIX = "/api/v1"
 THREADS = 30
 """Requests worked on at a time."""
 CONNECTIONS, SPARE = THREADS + 2, 8
 """Of the database: one for each thread and kept open, because new ones in a peak would make it worse; spare ones for
 audit lines that outlive an undone transaction."""
 ROUTERS = (
+    results.router,
+    patients.router,
+    sessions.router,
+    analyses.router,
     sign_in.router,
     single_sign_on.router,
     users.router,
-    patients.router,
-    sessions.router,
     recordings.router,
     uploads.router,
     attachments.router,
     subjects.router,
-    analyses.router,
-    results.router,
     viewers.router,
     reports.router,
     cohorts.router,
@@ -76,12 +75,6 @@ ROUTERS = (
     retention.router,
     system.router,
 )
-S = HTTPStatus
-_PROBLEMS = documented(
-    S.BAD_REQUEST, S.UNAUTHORIZED, S.FORBIDDEN, S.NOT_FOUND, S.CONFLICT, S.REQUEST_ENTITY_TOO_LARGE,
-    S.UNPROCESSABLE_ENTITY,
-    S.TOO_MANY_REQUESTS, S.SERVICE_UNAVAILABLE,
-)  # fmt: skip
 
 
 def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
@@ -97,16 +90,11 @@ def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url=f"{PREFIX}/openapi.json",
-        generate_unique_id_function=operation_id,
         lifespan=_lifespan,
     )
     app.state.settings, app.state.metrics = settings, REGISTRY
     app.openapi = lambda: document(app, (*ROUTERS, operations.router))
-    api = APIRouter(prefix=PREFIX, responses=_PROBLEMS)
-    for router in ROUTERS:
-        api.include_router(router)
-    app.include_router(api)
-    app.include_router(operations.router, responses=documented(S.UNAUTHORIZED))
+    add_routes(app, (*ROUTERS, operations.router))
     if frontend.is_dir():
         app.mount("/", Frontend(frontend), name="frontend")
     add_handlers(app)

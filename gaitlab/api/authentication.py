@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from uuid import UUID
 
-from sqlalchemy import func, select, update
+from sqlalchemy import bindparam, func, select, update
 from sqlalchemy.orm import Session
 
 from ..errors import AccessDenied, NotSignedIn, SecondFactorMissing, TooManyAttempts
@@ -22,8 +22,22 @@ ATTEMPTS = 10
 WINDOW = timedelta(minutes=15)
 SEEN_EVERY = timedelta(minutes=1)
 """How often the last use of a session or a token is written down."""
+KNOWN = {str(permission): permission for permission in Permission}
+"""A token may name permissions that a later version has dropped."""
 WRONG = "login, password or code is wrong"
 NOBODY = "nobody is signed in: sign in, or send a token as 'Authorization: Bearer ...'"
+
+# Every request asks one of these: they are made once.
+_TOKEN = (
+    select(ApiToken, User)
+    .join(User, ApiToken.user_id == User.id)
+    .where(ApiToken.token_hash == bindparam("hash"), ApiToken.revoked_at.is_(None), User.active)
+)
+_SESSION = (
+    select(WebSession, User)
+    .join(User, WebSession.user_id == User.id)
+    .where(WebSession.token_hash == bindparam("hash"), User.active)
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,29 +69,19 @@ def find_caller(db: Session, credentials: Credentials, settings: Settings) -> Ca
 
 
 def _by_token(db: Session, text: str) -> Caller:
-    query = (
-        select(ApiToken, User)
-        .join(User, ApiToken.user_id == User.id)
-        .where(ApiToken.token_hash == token_hash(text), ApiToken.revoked_at.is_(None), User.active)
-    )
-    found = db.execute(query).one_or_none()
+    found = db.execute(_TOKEN, {"hash": token_hash(text)}).one_or_none()
     moment = datetime.now(UTC)
     if found is None or (found[0].expires_at is not None and found[0].expires_at <= moment):
         raise NotSignedIn("the token does not exist, was revoked or has expired: make a new one")
     token, user = found
     if token.last_used_at is None or moment - token.last_used_at > SEEN_EVERY:
         db.execute(update(ApiToken).where(ApiToken.id == token.id).values(last_used_at=moment))
-    scopes = {Permission(scope) for scope in token.scopes if scope in set(Permission)}
+    scopes = {KNOWN[scope] for scope in token.scopes if scope in KNOWN}
     return _caller(user, PERMISSIONS[user.role] & scopes, token_id=token.id)
 
 
 def _by_cookie(db: Session, text: str, settings: Settings) -> Caller:
-    query = (
-        select(WebSession, User)
-        .join(User, WebSession.user_id == User.id)
-        .where(WebSession.token_hash == token_hash(text), User.active)
-    )
-    found = db.execute(query).one_or_none()
+    found = db.execute(_SESSION, {"hash": token_hash(text)}).one_or_none()
     moment = datetime.now(UTC)
     if found is None or not is_alive(found[0], moment, settings):
         raise NotSignedIn("the session has ended: sign in again")

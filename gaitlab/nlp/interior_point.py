@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .kkt_matrix import KKTFactors, kkt_assembly
 from .filter_search import LARGEST, Filter, Merit, backtrack
+from .kkt_matrix import KKTFactors, kkt_assembly
 from .sparse_problem import Derivatives, SparseProblem, Values, multiply, multiply_transposed
 from .sparse_solution import SparseSolution, Status, certify
 
@@ -72,8 +72,8 @@ class InteriorPoint:
     delta_first: float = 1e-4
     """First multiple of the identity tried where the Lagrangian is not convex."""
     gauss_newton: bool = False
-    """Where it is not convex use the Gauss-Newton part of the objective, if the problem has one: long steps far from a
-    solution that follows measurements, short ones near a solution whose constraints are curved."""
+    """Where it is not convex use the problem's Gauss-Newton Hessian, if it has one: steps are long far from a solution
+    that follows measurements, and short near one whose constraints are curved."""
 
     def solve(
         self,
@@ -184,8 +184,8 @@ class _Run:
         """Newton direction of a problem made convex on the null space of the constraints, or None."""
         sigma = x.lam_c / x.s
         matrix = self.assembly.matrix((derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma)
-        if self.method.gauss_newton and derivatives.convex is not None and not self._is_convex(matrix):
-            matrix = self.assembly.matrix((derivatives.convex(), derivatives.jac_g, derivatives.jac_c), sigma)
+        if self.method.gauss_newton and derivatives.gauss_newton is not None and not self._is_convex(matrix):
+            matrix = self.assembly.matrix((derivatives.gauss_newton(), derivatives.jac_g, derivatives.jac_c), sigma)
         delta, factors = self._convexify(matrix)
         for delta_g in DEPENDENT[DEPENDENT.index(self.delta_g) :]:
             if delta_g != self.delta_g or factors is None:
@@ -220,9 +220,7 @@ class _Run:
             delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
         return delta, None
 
-    def _solve_newton(
-        self, x: Iterate, values: Values, derivatives: Derivatives, factors: KKTFactors
-    ) -> Step | None:
+    def _solve_newton(self, x: Iterate, values: Values, derivatives: Derivatives, factors: KKTFactors) -> Step | None:
         st = self.structure
         residual_c = values.c - x.s
         pull = self.mu / x.s - x.lam_c - x.lam_c / x.s * residual_c

@@ -186,8 +186,11 @@ class _Eliminated(NamedTuple):
     """Bunch-Kaufman factors of S_k, and the columns of its inverse that the next block uses."""
 
     factor: np.ndarray
+    """Factors, shape (n_k, n_k)."""
     pivots: np.ndarray
+    """Interchanges, shape (n_k,)."""
     inverse: np.ndarray
+    """Columns of the inverse, shape (n_k, n_used)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,6 +199,7 @@ class KKTFactors:
 
     assembly: KKTAssembly
     matrix: np.ndarray
+    """Entries of K in memory, shape (n_entries,)."""
     eliminated: Sequence[_Eliminated]
     negative_eigenvalues: int
     """The minimiser's matrix has as many as there are equality constraints."""

@@ -37,13 +37,14 @@ class Derivatives(NamedTuple):
     """Entries of the Jacobian of c, shape (nnz_c,)."""
     hess: np.ndarray
     """Entries of the Hessian of f + lam_g' g - lam_c' c, both triangles, shape (nnz_h,)."""
-    convex: Callable[[], np.ndarray] | None = None
-    """Entries of its positive semidefinite part, where the problem knows one: the Gauss-Newton part of f."""
+    gauss_newton: Callable[[], np.ndarray] | None = None
+    """Gives entries of the Hessian, shape (nnz_h,), without the curvature of the constraints and of what criteria are
+    functions of: positive semidefinite where the criteria are convex. None where the problem has no such form."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SparseStructure:
-    """Sizes, sparsity and an order of the unknowns in which the KKT matrix is banded."""
+    """Sizes, sparsity and an order of the unknowns in which the KKT matrix is block tridiagonal."""
 
     n_w: int
     n_g: int

@@ -28,8 +28,9 @@ from ..transcription.hermite import GAUSS_POINTS
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
 from ..walking.criteria import ALL, THESIS
+from ..walking.gait_data import MeasuredGait, PointFootGait
 from ..walking.model import POINTS, ROOT, walking_functions
-from ..walking.point_foot_gait import GaitLevel, GaitOptimum, MeasuredGait, PointFootGait
+from ..walking.point_foot_gait import GaitLevel, GaitOptimum
 from ..walking.tracking import N_FORCES
 from .demo_gait import ReferenceGait, reference_gait
 from .demo_patterns import ContactTimes

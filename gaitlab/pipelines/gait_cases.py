@@ -13,7 +13,8 @@ import numpy as np
 from ..errors import NotFound
 from ..multibody.presets import thesis_able_bodied_child, thesis_cp_child
 from ..multibody.subject import SubjectModel
-from ..walking.point_foot_gait import GaitLevel, MeasuredGait, PointFootGait
+from ..walking.gait_data import MeasuredGait, PointFootGait
+from ..walking.point_foot_gait import GaitLevel
 from .bundled import DATA_FOLDERS
 from .demo_patterns import ABLE_BODIED_CHILD, CP_CHILD, GaitPattern
 

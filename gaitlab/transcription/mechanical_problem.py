@@ -236,7 +236,9 @@ class MechanicalProblem:
         """First and second derivatives at w, shape (n_w,), multipliers (n_g,) and (n_c,)."""
         s, d = self.shared, self.data
         n_residual = 2 * s.layout.n_intervals * s.layout.n_r
-        jac, grad, hess, convex = self._point_derivatives(self.points(w), lam_g[:n_residual].reshape(s.residual_shape[:2]))
+        jac, grad, hess, first_term = self._point_derivatives(
+            self.points(w), lam_g[:n_residual].reshape(s.residual_shape[:2])
+        )
         mu = self._node_multipliers(
             lam_g[n_residual : n_residual + len(s.contact)], lam_c[s.n_cone : s.n_cone + len(s.clear)]
         )
@@ -249,7 +251,7 @@ class MechanicalProblem:
             jac_g=np.concatenate(jac_g),
             jac_c=np.concatenate([s.cone[2], self._contact_entries(s.clear_terms, contact_jac), unit, -unit]),
             hess=self._hessian_entries(hess, contact_hess),
-            convex=lambda: self._hessian_entries(convex, np.zeros_like(contact_hess)),
+            gauss_newton=lambda: self._hessian_entries(first_term, np.zeros_like(contact_hess)),
         )
 
     def _hessian_entries(self, points: np.ndarray, nodes: np.ndarray) -> np.ndarray:
@@ -260,10 +262,9 @@ class MechanicalProblem:
     def _point_derivatives(
         self, z: np.ndarray, lam: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Transposed residual Jacobian, cost gradient, Hessian of the Lagrangian in (q, v, a, f), its convex part.
+        """Transposed residual Jacobian, cost gradient, Hessian of the Lagrangian in (q, v, a, f) and its first term.
 
-        With xi = (y, v) and the weighted cost phi(xi): gradient J' phi', Hessian J' phi'' J + sum_i phi'_i y_i''; the
-        first term is convex as the criteria are.
+        With xi = (y, v) and the weighted cost phi(xi): gradient J' phi', Hessian J' phi'' J + sum_i phi'_i y_i''.
         """
         s, d = self.shared, self.data
         n_q, n_y = s.layout.n_q, s.evaluate["outputs"].function.numel_out(0)
@@ -278,14 +279,14 @@ class MechanicalProblem:
         # Most outputs and velocities are in no criterion.
         used = np.flatnonzero(np.any(curvature != 0.0, axis=(0, 1)))
         by_used = jac[:, :, used]
-        convex = by_used @ curvature[:, used][:, :, used] @ np.swapaxes(by_used, 1, 2)
+        first_term = by_used @ curvature[:, used][:, :, used] @ np.swapaxes(by_used, 1, 2)
         gradient = (jac @ slope[:, :, None])[:, :, 0]
         smooth = s.weights[:, None] * d.acceleration_weights
         gradient[:, 2 * n_q : 3 * n_q] += smooth * z[:, 2 * n_q : 3 * n_q]
         diagonal = np.arange(2 * n_q, 3 * n_q)
-        convex[:, diagonal, diagonal] += smooth
-        hess = s.evaluate["output_hessian"](z, d.p, mu)[0] + convex
-        return jac[:, :, : s.layout.n_r], gradient, hess, convex
+        first_term[:, diagonal, diagonal] += smooth
+        hess = s.evaluate["output_hessian"](z, d.p, mu)[0] + first_term
+        return jac[:, :, : s.layout.n_r], gradient, hess, first_term
 
     def criterion_gradients(self, w: np.ndarray) -> np.ndarray:
         """Gradients of the integrated criteria, shape (n_w, n_criteria)."""

@@ -7,8 +7,9 @@ import numpy as np
 
 from ..multibody.kinematics import forward_kinematics, point_positions
 from ..transcription.hermite import GAUSS_POINTS
+from .gait_data import PointFootGait
 from .model import ROOT
-from .point_foot_gait import GaitOptimum, PointFootGait
+from .point_foot_gait import GaitOptimum
 
 
 @dataclass(frozen=True, kw_only=True)

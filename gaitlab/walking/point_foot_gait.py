@@ -20,19 +20,17 @@ from uuid import uuid4
 import numpy as np
 
 from ..multibody.dynamics import layout_of, parameter_vector
-from ..multibody.subject import SubjectModel
 from ..nlp.interior_point import InteriorPoint, Iterate
 from ..nlp.sensitivity import Sensitivity
 from ..nlp.solution import KKTResiduals
 from ..nlp.sparse_solution import SparseSolution, Status, certify
 from ..nlp.workers import Workers
-from ..ocp.mechanical import ContactStage
 from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
 from .arcs import ArcTask, solve_in_turn
-from .contact_schedule import thesis_stages
 from .criteria import ALL, THESIS
+from .gait_data import MeasuredGait, PointFootGait
 from .gait_guess import Curves, StandingPoints, smooth_states
 from .model import POINTS, ROOT, walking_functions
 from .tracking import N_FORCES
@@ -51,8 +49,8 @@ CALM = 0.01
 the nodes from ringing."""
 
 PATH = (10.0, 1.0, 0.1)
-"""Weights of half the mean squared residual on the way from the measurements to the optimal gait. At the last the motion
-is still near the measurements for any weights, and already tells what they must be."""
+"""Weights of half the mean squared residual on the way from the measurements to the optimal gait. At the last one the
+motion is still near the measurements for any weights, and already tells what they must be."""
 PATIENCE = 40
 """Iterations granted on such a way."""
 
@@ -61,48 +59,6 @@ NEAR_BARRIER = 1e-5
 
 NEARBY = 10
 """Iterations granted to a start that should be close."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PointFootGait:
-    """One of the two models of the thesis with everything that its lower level needs."""
-
-    name: str
-    subject: SubjectModel
-    durations: tuple[float, float, float]
-    """Of the three single supports [s]."""
-    n_intervals: tuple[int, int, int]
-    states: np.ndarray
-    """States (q, v) at both ends of each stage [m, rad, 1/s], shape (3, 2, 2 n_q)."""
-    normalisers: np.ndarray
-    """Means N_i of the criteria, summed over the stages, at the true optimum, shape (4,)."""
-    acceleration_weight: float
-    """Weight of half the squared angular accelerations, mean over each stage: joints without load stay calm."""
-    torque_floor: float
-    """Weight of the normalised squared torques beside criteria that sum to one."""
-    force_weight: float
-    """Weight of half the squared contact forces in body weights, mean over each stage."""
-
-    @property
-    def stages(self) -> tuple[ContactStage, ...]:
-        """The three single supports; as in the thesis, nothing limits the forces of the floor."""
-        free = np.zeros((0, N_FORCES))
-        return tuple(replace(stage, force_cone=free) for stage in thesis_stages(self.durations, self.n_intervals))
-
-    def finer(self, factor: int) -> "PointFootGait":
-        """The same on a grid with `factor` times as many intervals."""
-        first, second, third = self.n_intervals
-        return replace(self, n_intervals=(factor * first, factor * second, factor * third))
-
-
-@dataclass(frozen=True, kw_only=True)
-class MeasuredGait:
-    """Coordinates measured at the nodes."""
-
-    q: tuple[np.ndarray, ...]
-    """Per stage [m, rad], shapes (N_k + 1, n_q)."""
-    deviation: np.ndarray
-    """Standard deviations of the coordinates [m, rad], shape (n_q,)."""
 
 
 @dataclass(frozen=True, kw_only=True)

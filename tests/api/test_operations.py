@@ -34,7 +34,7 @@ def test_the_metrics_count_waiting_running_and_failed_jobs_by_kind(world, case):
 
 
 def test_requests_are_counted_by_route_and_not_by_patient(world, case):
-    name = 'gaitlab_requests_total{method="GET",route="/patients/{patient_id}",status="200"}'
+    name = 'gaitlab_requests_total{method="GET",route="/api/v1/patients/{patient_id}",status="200"}'
     before = numbers(world.client.get("/metrics").text).get(name, 0.0)
     world.client.get(f"/api/v1/patients/{case.patient_id}", headers=world.as_role(Role.CLINICIAN))
     assert numbers(world.client.get("/metrics").text)[name] == before + 1

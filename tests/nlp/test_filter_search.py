@@ -28,6 +28,12 @@ def test_a_filter_refuses_what_it_dominates():
     assert all(search_filter.accepts(merit(*pair)) for pair in accepted)
 
 
+def test_a_filter_refuses_very_large_violations():
+    search_filter = Filter(largest=100.0)
+    assert search_filter.accepts(merit(100.0, -1e9))
+    assert not search_filter.accepts(merit(100.1, -1e9))
+
+
 def test_a_filter_forgets_what_a_better_pair_dominates():
     search_filter = Filter()
     for pair in [(1.0, 5.0), (3.0, 2.0), (0.5, 1.0)]:

@@ -127,3 +127,43 @@ def test_pairs_in_rows():
     pairs = set(zip(*(column.tolist() for column in pairs_in_rows(rows, entries)), strict=True))
     assert pairs == {(0, 11, 11), (2, 10, 10), (2, 10, 12), (2, 12, 10), (2, 12, 12), (3, 13, 13)}
     assert all(len(column) == 0 for column in pairs_in_rows(rows[:0], entries[:0]))
+
+
+def test_a_block_that_is_singular_alone_has_no_elimination(chain):
+    assembly = KKTAssembly(chain.structure)
+    # The first variable of the first block is in nothing.
+    first = (chain.structure.hess.rows == 0) | (chain.structure.hess.cols == 0)
+    entries = np.where(first, 0.0, chain.hess), np.where(chain.structure.jac_g.cols == 0, 0.0, chain.jac_g)
+    jac_c = np.where(chain.structure.jac_c.cols == 0, 0.0, chain.jac_c)
+    assert assembly.factorise(assembly.matrix((*entries, jac_c), chain.sigma)) is None
+
+
+def test_pivoting_across_blocks_takes_over_where_elimination_loses_digits(chain):
+    """A tiny first pivot: elimination alone is off, the answer is not."""
+    none, i = Pattern(np.zeros(0, int), np.zeros(0, int)), np.array([0, 0, 1])
+    structure = SparseStructure(
+        n_w=2, n_g=0, n_c=0, jac_g=none, jac_c=none, order=np.arange(2), blocks=np.array([1, 1]),
+        hess=Pattern(np.append(i, 1), np.array([0, 1, 0, 1])),
+    )  # fmt: skip
+    assembly, nothing = KKTAssembly(structure), np.zeros(0)
+    factors = assembly.factorise(assembly.matrix((np.array([1e-30, 1.0, 1.0, 1.0]), nothing, nothing), nothing))
+    np.testing.assert_allclose(factors.solve(np.array([1.0, 2.0])), [1.0, 1.0], atol=1e-12)
+
+
+def test_a_matrix_that_is_singular_to_rounding_solves_nothing():
+    none = Pattern(np.zeros(0, int), np.zeros(0, int))
+    structure = SparseStructure(
+        n_w=2, n_g=0, n_c=0, jac_g=none, jac_c=none, order=np.arange(2), blocks=np.array([2]),
+        hess=Pattern(np.array([0, 0, 1, 1]), np.array([0, 1, 0, 1])),
+    )  # fmt: skip
+    assembly, nothing = KKTAssembly(structure), np.zeros(0)
+    factors = assembly.factorise(assembly.matrix((np.array([1.0, 1.0, 1.0, 1.0 + 1e-16]), nothing, nothing), nothing))
+    assert factors is None or factors.solve(np.array([1.0, 2.0])) is None
+
+
+def test_far_couplings_are_refused(chain):
+    s = chain.structure
+    far = Pattern(np.append(s.hess.rows, s.n_w - 1), np.append(s.hess.cols, 0))
+    assembly = KKTAssembly(SparseStructure(**(vars(s) | {"hess": far})))
+    with pytest.raises(ProblemError, match="neighbouring blocks"):
+        _ = assembly.blocks

@@ -1,5 +1,7 @@
 """Values by hand and derivatives by finite differences, of a planar body that pushes off, flies and lands."""
 
+from dataclasses import replace
+
 import numpy as np
 import planar_body
 import pytest
@@ -184,3 +186,18 @@ def test_stepping_down_meets_every_condition():
         np.testing.assert_allclose(state[:3], balanced[:3], atol=1e-6)
         assert node == 0 or node >= 4 or state[2] > 0.0
     np.testing.assert_allclose(states[4:], [balancing_on_the_rear_foot(0.0)] * 3, atol=1e-6)
+
+
+def test_the_gauss_newton_hessian_of_convex_criteria_is_positive_semidefinite(problem, point):
+    w, lam_g, lam_c = point
+    s = problem.structure
+    # The first criterion is a square.
+    squares = replace(problem, data=replace(problem.data, theta=np.array([0.7, 0.0, 0.0])))
+    d = squares.derivatives(w, lam_g, lam_c)
+    first_term, whole = (dense(s.hess, entries, (s.n_w, s.n_w)) for entries in (d.gauss_newton(), d.hess))
+    np.testing.assert_allclose(first_term, first_term.T, atol=1e-12)
+    size = np.linalg.eigvalsh(first_term)[-1]
+    assert np.linalg.eigvalsh(first_term)[0] >= -1e-12 * size
+    assert np.linalg.eigvalsh(whole)[0] < -1e-6 * size
+    again = squares.derivatives(w, 2.0 * lam_g, lam_c)
+    np.testing.assert_allclose(again.gauss_newton(), d.gauss_newton(), atol=1e-12)

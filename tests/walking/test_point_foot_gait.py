@@ -9,7 +9,8 @@ from gaitlab.multibody.kinematics import point_positions
 from gaitlab.pipelines.gait_benchmark_data import after_impact, in_order
 from gaitlab.pipelines.gait_cases import load_case
 from gaitlab.walking.gait_courses import courses
-from gaitlab.walking.point_foot_gait import GaitLevel, MeasuredGait
+from gaitlab.walking.gait_data import MeasuredGait
+from gaitlab.walking.point_foot_gait import GaitLevel
 
 
 @pytest.fixture(scope="module", params=["cp-child", "able-bodied-child"])

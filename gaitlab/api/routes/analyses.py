@@ -7,7 +7,7 @@ from http import HTTPStatus
 from typing import Annotated, Any
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import exists, select
 from sqlalchemy.orm import aliased
 from starlette.concurrency import run_in_threadpool
@@ -25,12 +25,13 @@ from ..orders import again, order
 from ..permissions import Permission
 from ..pseudonyms import mask, masked_names
 from ..repetition import RepetitionKey, once
+from ..routing import api_router
 from ..schemas.forms import Page
 from ..schemas.work import Job, JobFilter, JobInput, NewJob, PriorityChange, Progress
 
 KEEP_ALIVE = 15.0
 """Time without news after which a comment is sent, so that proxies keep the connection open [s]."""
-router = APIRouter(prefix="/analyses", tags=["analyses"])
+router = api_router("/analyses", tag="analyses")
 Reader = Annotated[Call, allowed(Permission.ANALYSES_READ)]
 Runner = Annotated[Call, allowed(Permission.ANALYSES_RUN)]
 Manager = Annotated[Call, allowed(Permission.SYSTEM_READ)]

@@ -4,7 +4,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Header, Query, Response
+from fastapi import Header, Query, Response
 from sqlalchemy import select, update
 
 from ...storage.models import Attachment as AttachmentRow
@@ -16,10 +16,11 @@ from ..dependencies import Asker, allowed, allowed_slowly
 from ..files import content, stream_part
 from ..listing import page
 from ..permissions import Permission
+from ..routing import api_router
 from ..schemas.forms import Page, Paging
 from ..schemas.patients import Attachment
 
-router = APIRouter(tags=["attachments"])
+router = api_router(tag="attachments")
 Reader = Annotated[Call, allowed(Permission.IDENTITIES_READ)]
 """Videos show faces."""
 ByteRange = Annotated[str | None, Header(alias="Range", max_length=100)]

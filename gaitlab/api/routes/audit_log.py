@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from sqlalchemy import select
 
 from ...storage.models import AuditEntry
@@ -10,10 +10,11 @@ from ..caller import Call
 from ..dependencies import allowed
 from ..listing import page
 from ..permissions import Permission
+from ..routing import api_router
 from ..schemas.forms import Page
 from ..schemas.system import AuditFilter, AuditLine
 
-router = APIRouter(tags=["audit"])
+router = api_router(tag="audit")
 Auditor = Annotated[Call, allowed(Permission.AUDIT_READ)]
 
 

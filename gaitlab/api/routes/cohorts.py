@@ -5,7 +5,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import delete, func, select
 
 from ...clinical.comparison import Member, compare, tables
@@ -22,6 +22,7 @@ from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
 from ..results import read_document
+from ..routing import api_router
 from ..schemas.forms import Page, Paging
 from ..schemas.work import (
     Cohort,
@@ -35,7 +36,7 @@ from ..schemas.work import (
     NewCohort,
 )
 
-router = APIRouter(tags=["cohorts"])
+router = api_router(tag="cohorts")
 Reader = Annotated[Call, allowed(Permission.COHORTS_READ)]
 Writer = Annotated[Call, allowed(Permission.COHORTS_WRITE)]
 Comparer = Annotated[Asker, allowed_slowly(Permission.RESULTS_READ)]

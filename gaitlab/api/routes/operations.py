@@ -12,9 +12,15 @@ from sqlalchemy.exc import SQLAlchemyError
 from ...errors import NotSignedIn
 from ..dependencies import services_of
 from ..files import content
+from ..openapi import operation_id
+from ..problems import documented
 from ..tokens import same
 
-router = APIRouter(tags=["operations"])
+router = APIRouter(
+    tags=["operations"],
+    responses=documented(HTTPStatus.UNAUTHORIZED),
+    generate_unique_id_function=operation_id,
+)
 NOT_READY: dict[int | str, dict[str, Any]] = {503: {"description": "Not ready.", "content": {"application/json": {}}}}
 
 

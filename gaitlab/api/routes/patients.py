@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Annotated, Any
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import ColumnElement, Select, case, func, nulls_last, or_, select
 from starlette.background import BackgroundTask
 from starlette.responses import FileResponse
@@ -25,6 +25,7 @@ from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
 from ..results import keep_until_sent
+from ..routing import api_router
 from ..schemas.forms import Page
 from ..schemas.patients import (
     Identity,
@@ -38,7 +39,7 @@ from ..schemas.patients import (
 )
 
 CLEARABLE = frozenset({"retain_until"})
-router = APIRouter(prefix="/patients", tags=["patients"])
+router = api_router("/patients", tag="patients")
 Reader = Annotated[Call, allowed(Permission.PATIENTS_READ)]
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
 IdentityExporter = Annotated[Asker, allowed_slowly(Permission.IDENTITIES_READ)]

@@ -4,7 +4,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import select, update
 
 from ...mocap.anonymise import blank_personal_entries
@@ -20,10 +20,11 @@ from ..listing import page
 from ..orders import order_inspection
 from ..permissions import Permission
 from ..pseudonyms import mask, masked_names
+from ..routing import api_router
 from ..schemas.forms import Page, Paging
 from ..schemas.patients import Recording, RecordingChange, StrippedRecording
 
-router = APIRouter(tags=["recordings"])
+router = api_router(tag="recordings")
 Reader = Annotated[Call, allowed(Permission.PATIENTS_READ)]
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
 FileReader = Annotated[Call, allowed(Permission.IDENTITIES_READ)]

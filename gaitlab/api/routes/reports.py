@@ -4,7 +4,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import func, select
 
 from ...errors import AccessDenied, Conflict, InvalidRequest
@@ -30,10 +30,11 @@ from ..passwords import verify_password
 from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
+from ..routing import api_router
 from ..schemas.forms import Page
 from ..schemas.work import NewReport, NewSignature, Report, ReportFilter, Signature
 
-router = APIRouter(prefix="/reports", tags=["reports"])
+router = api_router("/reports", tag="reports")
 Reader = Annotated[Call, allowed(Permission.REPORTS_READ)]
 Writer = Annotated[Call, allowed(Permission.REPORTS_WRITE)]
 Signer = Annotated[Call, allowed(Permission.REPORTS_SIGN)]

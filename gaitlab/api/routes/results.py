@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 from uuid import UUID
 
 import msgspec
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from pydantic import Field
 from sqlalchemy import delete, exists, select
 from starlette.background import BackgroundTask
@@ -37,10 +37,11 @@ from ..results import (
     source_of,
     table_file,
 )
+from ..routing import api_router
 from ..schemas.forms import Input, Line, Page
 from ..schemas.work import Result, ResultFilter, ResultWithFiles
 
-router = APIRouter(prefix="/results", tags=["results"])
+router = api_router("/results", tag="results")
 Reader = Annotated[Call, allowed(Permission.RESULTS_READ)]
 NameReader = Annotated[Call, allowed(Permission.IDENTITIES_READ)]
 Exporter = Annotated[Asker, allowed_slowly(Permission.RESULTS_READ)]

@@ -2,16 +2,16 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from sqlalchemy.orm import Session
 
 from ...storage.retention import change_rule, rules
 from ..caller import Call
 from ..dependencies import allowed
 from ..permissions import Permission
+from ..routing import api_router
 from ..schemas.system import RetentionChange, RetentionRule
 
-router = APIRouter(prefix="/retention", tags=["system"])
+router = api_router("/retention", tag="system")
 Reader = Annotated[Call, allowed(Permission.SYSTEM_READ)]
 Manager = Annotated[Call, allowed(Permission.SYSTEM_WRITE)]
 

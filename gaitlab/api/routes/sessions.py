@@ -5,7 +5,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import select
 
 from ...storage.deletion import delete_session as delete_everything
@@ -17,12 +17,13 @@ from ..dependencies import ExpectedVersion, allowed, check_version, tag
 from ..listing import page
 from ..permissions import Permission
 from ..repetition import RepetitionKey, once
+from ..routing import api_router
 from ..schemas.forms import Page, Paging
 from ..schemas.patients import NewSession, Session, SessionChange, SessionFilter
 
 DAYS_PER_YEAR = 365.2425
 CLEARABLE = frozenset({"age_years"})
-router = APIRouter(tags=["sessions"])
+router = api_router(tag="sessions")
 Reader = Annotated[Call, allowed(Permission.PATIENTS_READ)]
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
 

@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from sqlalchemy import exists, select, update
 from sqlalchemy.orm import Session
 
@@ -33,6 +33,7 @@ from ..dependencies import (
 )
 from ..passwords import check_acceptable, verify_password
 from ..permissions import PERMISSIONS, Permission
+from ..routing import api_router
 from ..schemas.accounts import (
     AcceptLink,
     LinkPurpose,
@@ -48,7 +49,7 @@ from ..schemas.accounts import (
 from ..second_factor import new_secret, provisioning_uri
 from ..tokens import csrf_token, token_hash
 
-router = APIRouter(prefix="/auth", tags=["sign-in"])
+router = api_router("/auth", tag="sign-in")
 Account = Annotated[Call, allowed(Permission.ACCOUNT)]
 USED = "the link does not exist, was used or has expired: ask for a new one"
 

@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import httpx
-from fastapi import APIRouter, Query, Request
+from fastapi import Query, Request
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 from starlette.responses import RedirectResponse, Response
@@ -12,6 +12,7 @@ from ...errors import AccessDenied, InvalidRequest, NotSignedIn
 from ...storage.models import Role, User
 from ..dependencies import Transaction, services_of
 from ..problems import Absent
+from ..routing import api_router
 from ..single_sign_on import SECONDS, Identity, Provider, attempt_of, new_attempt
 from ..tokens import same
 from .sign_in import enter
@@ -20,7 +21,7 @@ COOKIE = "gaitlab_oidc"
 CALLBACK = "/api/v1/auth/oidc/callback"
 WAIT = 600
 """Time that the browser may spend at the provider [s]."""
-router = APIRouter(prefix="/auth/oidc", tags=["sign-in"])
+router = api_router("/auth/oidc", tag="sign-in")
 REDIRECT: dict[int | str, dict[str, Any]] = {302: {"description": "To the provider, or back to the application."}}
 
 

@@ -4,7 +4,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import select
 
 from ...storage.models import Subject as SubjectRow
@@ -16,10 +16,11 @@ from ..listing import page
 from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
+from ..routing import api_router
 from ..schemas.forms import Page, Paging
 from ..schemas.patients import NewSubject, Subject, SubjectChange
 
-router = APIRouter(tags=["subjects"])
+router = api_router(tag="subjects")
 Reader = Annotated[Call, allowed(Permission.PATIENTS_READ)]
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
 

@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import Annotated, Any, get_args
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from sqlalchemy import func, select, text
 from sqlalchemy.orm import Session
 
@@ -20,9 +20,10 @@ from ..files import CHUNK_LIMIT
 from ..orders import NORM_NAMES
 from ..permissions import Permission
 from ..quantities import QUANTITIES
+from ..routing import api_router
 from ..schemas.system import About, PredictionQuantity, SystemState
 
-router = APIRouter(tags=["system"])
+router = api_router(tag="system")
 SignedIn = Annotated[Call, allowed(Permission.ACCOUNT)]
 Manager = Annotated[Call, allowed(Permission.SYSTEM_READ)]
 _ROWS = text(

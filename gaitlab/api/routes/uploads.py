@@ -5,7 +5,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Path, Request
+from fastapi import Path, Request
 from sqlalchemy import delete, select
 from starlette.concurrency import run_in_threadpool
 
@@ -22,11 +22,12 @@ from ..dependencies import Asker, allowed, allowed_slowly
 from ..files import CHUNK_LIMIT, body_of, pieces, receive, spool
 from ..permissions import Permission
 from ..repetition import RepetitionKey, once
+from ..routing import api_router
 from ..schemas.forms import FURTHEST, FileName
 from ..schemas.patients import NewUpload, Recording, Upload
 from .recordings import recording_answer
 
-router = APIRouter(tags=["uploads"])
+router = api_router(tag="uploads")
 Writer = Annotated[Call, allowed(Permission.PATIENTS_WRITE)]
 Sender = Annotated[Asker, allowed_slowly(Permission.PATIENTS_WRITE)]
 Offset = Annotated[int, Path(ge=0, le=FURTHEST * 10**6, description="First byte of the chunk in the file.")]

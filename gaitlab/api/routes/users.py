@@ -5,7 +5,7 @@ from http import HTTPStatus
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Query, Response
+from fastapi import Query, Response
 from sqlalchemy import func, or_, select, update
 
 from ...errors import AccessDenied, Conflict
@@ -19,6 +19,7 @@ from ..listing import containing, page
 from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
+from ..routing import api_router
 from ..schemas.accounts import (
     Colleague,
     NewToken,
@@ -35,7 +36,7 @@ from ..schemas.forms import Page
 from ..tokens import API, LINK, new_token
 
 LINK_LIFETIME = timedelta(hours=72)
-router = APIRouter()
+router = api_router()
 Manager = Annotated[Call, allowed(Permission.USERS_MANAGE)]
 Account = Annotated[Call, allowed(Permission.ACCOUNT)]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Request, Response, WebSocket
+from fastapi import Request, Response, WebSocket
 from starlette.concurrency import run_in_threadpool
 
 from ...errors import AccessDenied
@@ -17,13 +17,14 @@ from ..origin import is_same_origin
 from ..permissions import Permission
 from ..problems import Absent
 from ..results import SHOWN, copy_files, files_of
+from ..routing import api_router
 from ..schemas.work import Viewer
 from ..viewer_proxy import connect, control, fetch
 from ..viewers import Owner
 from ..viewers import Viewer as Running
 
 REFUSED = 4003
-router = APIRouter(tags=["3D sessions"])
+router = api_router(tag="3D sessions")
 Looker = Annotated[Asker, allowed_slowly(Permission.RESULTS_READ)]
 
 
