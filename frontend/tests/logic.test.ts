@@ -10,7 +10,7 @@ import { readNpz } from "../src/result/npz";
 import { stacked } from "../src/result/ShareChart";
 import { parseTable, resample } from "../src/result/table";
 import { sharesOf } from "../src/result/walk";
-import { changesOf } from "../src/result/changes";
+import { changesOf, weightChangesOf } from "../src/result/changes";
 import { byTrial, eventsIn } from "../src/visit/events";
 import { foundIn } from "../src/visit/inspection";
 import { isWanted } from "../src/visit/upload";
@@ -97,6 +97,18 @@ describe("visit", () => {
 
 it("writes changes as the command line does", () => {
   expect(changesOf({ speed: 10, mass: -5, left: 0 })).toEqual(["speed=+10%", "mass=-5%"]);
+});
+
+it("asks only for weights that were moved", () => {
+  const identified = [
+    { name: "torque", weight: 0.304 },
+    { name: "lateral_stability", weight: 0.696 },
+  ];
+  expect(weightChangesOf({ torque: 30 }, identified)).toEqual([]);
+  expect(weightChangesOf({ torque: 45, lateral_stability: 0 }, identified)).toEqual([
+    "torque_weight=0.45",
+    "lateral_stability_weight=0",
+  ]);
 });
 
 it("sorts unknown cells last", () => {

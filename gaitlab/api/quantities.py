@@ -5,8 +5,10 @@ Written down a second time for the reason that `choices` gives; a test compares 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import get_args
 
 from ..errors import NotFound
+from .choices import CriterionName
 
 SIDES = ("left", "right")
 JOINT_ANGLES = ("hip_flexion", "hip_adduction", "hip_rotation", "knee_flexion", "ankle_dorsiflexion")
@@ -57,6 +59,7 @@ QUANTITIES: Mapping[str, Quantity] = {
     "cadence": Quantity("steps/min", 10.0, 300.0, "the identified gait"),
     "mass": Quantity("kg", 2.0, 300.0, "the identified body"),
     "pelvis_mass": Quantity("kg", 0.5, 200.0, "the identified body"),
+    **{f"{name}_weight": Quantity("", 0.0, 1.0, "the identified weight") for name in get_args(CriterionName)},
 } | {name: quantity for side in SIDES for name, quantity in _of_side(side).items()}
 """All quantities by name."""
 

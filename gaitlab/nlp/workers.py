@@ -43,8 +43,21 @@ def worker_pool(count: int = 0) -> "AbstractContextManager[Workers | None]":
     return Workers(count) if count > 1 else nullcontext()
 
 
+def side_by_side(calls: Sequence[Callable[[], Result]]) -> list[Result]:
+    """Results of calls that mostly wait for workers, each in a thread of its own.
+
+    Raises what a call raised; where one gives up, the others lose their workers, which is told only if nothing else is.
+    """
+    with ThreadPoolExecutor(max(len(calls), 1)) as pool:
+        futures = [pool.submit(call) for call in calls]
+        raised = [error for error in (future.exception() for future in futures) if error is not None]
+    for error in sorted(raised, key=lambda error: isinstance(error, WorkerLost)):
+        raise error
+    return [future.result() for future in futures]
+
+
 class Workers:
-    """A fixed number of processes, used as a context; they start with it and end with it."""
+    """A fixed number of processes, used as a context; they start with it and end with it. Threads may share them."""
 
     def __init__(self, count: int) -> None:
         environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")

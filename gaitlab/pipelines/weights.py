@@ -1,8 +1,9 @@
 """From measured coordinates to the weights of the criteria: the seam between gait analysis and optimal control."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
+from threading import Lock
 from time import perf_counter
 
 import msgspec
@@ -16,7 +17,7 @@ from ..mocap.cycles import full_strides
 from ..mocap.recording import Event, Recording
 from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
-from ..nlp.workers import Workers, worker_pool
+from ..nlp.workers import Workers, side_by_side, worker_pool
 from ..walking.contact_phases import GaitEvents, contact_phases, foot_directions
 from ..walking.contact_schedule import Landing, ScheduleSettings, contact_stages
 from ..walking.criteria import by_name
@@ -149,34 +150,69 @@ def _apart(strides: list[tuple[Cycle, MeasuredStride]]) -> list[tuple[Cycle, Mea
     return [strides[0], *sorted(strides[1:], key=overlap)]
 
 
+@dataclass(frozen=True, kw_only=True)
+class _StrideTask:
+    """One stride to explain."""
+
+    request: WeightsRequest
+    cycle: Cycle
+    stride: MeasuredStride
+    with_others: bool
+    """Whether to compare with other weights: the walk's first explained stride does, the others are for the spread."""
+
+    @property
+    def where(self) -> str:
+        """The stride in words."""
+        return f"{self.cycle.side} stride at {self.cycle.start:.2f} s"
+
+    def run(self, progress: Progress, workers: Workers | None) -> ExplainedStride | str:
+        """The explanation, or why there is none."""
+        request, begin = self.request, perf_counter()
+
+        def report(stage: str, iteration: int, residual: float) -> None:
+            words = f"{stage}, {self.where}"
+            known = residual if np.isfinite(residual) else None
+            progress(Step(stage=words, trial=request.recording.name, iteration=iteration, residual=known))
+
+        settings = ExplanationSettings(
+            identification=IdentificationSettings(criteria=request.criteria), single_criteria=self.with_others
+        )
+        try:
+            found = explain(self.stride, settings, report, workers, partial(frames_of, request, self.stride))
+        except NotConverged as error:
+            return f"{self.where}: {error}"
+        return ExplainedStride(cycle=self.cycle, found=found, seconds=perf_counter() - begin)
+
+
 def _explain_all(
     request: WeightsRequest,
     strides: Sequence[tuple[Cycle, MeasuredStride]],
     progress: Progress,
     workers: Workers | None,
 ) -> tuple[list[ExplainedStride], tuple[str, ...]]:
-    settings = ExplanationSettings(identification=IdentificationSettings(criteria=request.criteria))
-    explained: list[ExplainedStride] = []
-    failed: list[str] = []
-    for cycle, stride in strides:
-        if len(explained) == MOST_STRIDES:
-            break
-        where = f"{cycle.side} stride at {cycle.start:.2f} s"
+    """The first strides side by side where there are workers, further ones where those are not explained."""
+    lock = Lock()
 
-        def report(stage: str, iteration: int, residual: float, where: str = where) -> None:
-            words = f"{stage}, {where}"
-            known = residual if np.isfinite(residual) else None
-            progress(Step(stage=words, trial=request.recording.name, iteration=iteration, residual=known))
+    def in_turn(step: Step) -> None:
+        with lock:
+            progress(step)
 
-        begin = perf_counter()
-        try:
-            # The first stride carries the comparison with other weights; the others are there for the spread.
-            frames = partial(frames_of, request, stride)
-            found = explain(stride, replace(settings, single_criteria=not explained), report, workers, frames)
-        except NotConverged as error:
-            failed.append(f"{where}: {error}")
-            continue
-        explained.append(ExplainedStride(cycle=cycle, found=found, seconds=perf_counter() - begin))
+    explained, failed, waiting = list[ExplainedStride](), list[str](), list(strides)
+    while waiting and len(explained) < MOST_STRIDES:
+        wanted = MOST_STRIDES - len(explained)
+        if workers is None or not explained and failed:
+            wanted = 1
+        tasks = [
+            _StrideTask(request=request, cycle=cycle, stride=stride, with_others=not explained and i == 0)
+            for i, (cycle, stride) in enumerate(waiting[:wanted])
+        ]
+        outcomes = side_by_side([partial(task.run, in_turn, workers) for task in tasks])
+        if not explained and isinstance(outcomes[0], str):
+            # The next one is the first now.
+            outcomes = outcomes[:1]
+        waiting = waiting[len(outcomes) :]
+        explained += [outcome for outcome in outcomes if isinstance(outcome, ExplainedStride)]
+        failed += [outcome for outcome in outcomes if isinstance(outcome, str)]
     if not explained:
         raise NotConverged(f"{request.recording.name}: no stride could be explained. " + " ".join(failed))
     return explained, tuple(failed)

@@ -15,6 +15,7 @@ from ..nlp.sparse_solution import SparseSolution, Status, certify
 from ..ocp.mechanical import ContactStage
 from ..transcription.mechanical_layout import Boundary, ContactRow, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
+from .criteria import ALL
 from .identification import WalkOptimum
 from .model import ROOT, walking_functions
 from .tracking import N_FORCES, MeasuredStride
@@ -39,6 +40,8 @@ class IdentifiedGait:
     criteria: tuple[str, ...]
     weights: np.ndarray
     """On the simplex, shape (n_criteria,)."""
+    normalisers: np.ndarray
+    """What the criteria are divided by, shape (n_criteria,)."""
     heading: float = 0.0
     """Direction of the gait frame in the laboratory [rad]."""
 
@@ -51,6 +54,18 @@ class IdentifiedGait:
     def duration(self) -> float:
         """Stride time [s]."""
         return float(self.stride.times[-1] - self.stride.times[0])
+
+    def raw_weights(self, weights: np.ndarray | None = None) -> np.ndarray:
+        """Weights of all criteria as they stand in the problem, floors included, shape (n_all_criteria,).
+
+        For other weights of the gait's criteria, shape (n_criteria,); None: those that were identified.
+        """
+        raw = self.problem.data.theta
+        if weights is None:
+            return raw
+        shift = np.zeros_like(raw)
+        shift[[list(ALL).index(name) for name in self.criteria]] = (weights - self.weights) / self.normalisers
+        return raw + shift
 
     @property
     def length(self) -> float:
@@ -67,6 +82,7 @@ def identified_gait(optimum: WalkOptimum, weights: np.ndarray, heading: float = 
         given_nodes=optimum.level.given_nodes,
         criteria=optimum.level.settings.criteria,
         weights=weights,
+        normalisers=optimum.level.normalisers,
         heading=heading,
     )
 
@@ -117,7 +133,7 @@ def write_gait(gait: IdentifiedGait, path: Path) -> None:
     )
     arrays = {name: getattr(data, name) for name in DATA} | {name: getattr(gait.solution, name) for name in SOLUTION}
     arrays |= {"times": gait.stride.times, "reference": gait.stride.reference, "given": data.given}
-    arrays |= {"given_nodes": gait.given_nodes, "weights": gait.weights}
+    arrays |= {"given_nodes": gait.given_nodes, "weights": gait.weights, "normalisers": gait.normalisers}
     text = np.frombuffer(msgspec.json.encode(described, enc_hook=encode_array), dtype=np.uint8)
     try:
         np.savez_compressed(path, allow_pickle=False, described=text, **arrays)
@@ -186,6 +202,7 @@ def _built(described: _Described, arrays: dict[str, np.ndarray]) -> IdentifiedGa
         given_nodes=nodes,
         criteria=described.criteria,
         weights=arrays["weights"],
+        normalisers=arrays["normalisers"],
         heading=described.heading,
     )
 

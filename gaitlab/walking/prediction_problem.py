@@ -114,7 +114,7 @@ class PredictionProblem:
         data = replace(
             base,
             p=situation.parameters(),
-            theta=scale * base.theta,
+            theta=scale * self.gait.raw_weights(situation.weights),
             acceleration_weights=scale * base.acceleration_weights,
             force_weight=scale * base.force_weight,
             reference=reference,

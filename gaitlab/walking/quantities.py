@@ -12,17 +12,21 @@ from typing import Literal
 
 import numpy as np
 
+from ..errors import NotFound
 from ..multibody.body_change import segment_length
 from ..multibody.subject import SubjectModel
 from ..transcription.output_limits import OutputLimit
+from .criteria import ALL
 from .identified_gait import IdentifiedGait
 from .model import ROOT
 
 Kind = Literal[
-    "task", "mass", "length", "segment mass", "torsion", "lowest angle", "highest angle", "torque", "orthosis"
+    "task", "mass", "length", "segment mass", "torsion", "lowest angle", "highest angle", "torque", "orthosis", "weight"
 ]
 SIDES = ("left", "right")
 DEGREE = pi / 180.0
+WEIGHT = "_weight"
+"""End of the names of weights, after that of their criterion."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,6 +85,15 @@ def _task() -> list[Quantity]:
                  lowest=0.02, highest=1.5, relative_to="the identified gait"),
         Quantity(name="cadence", unit="steps/min", kind="task", meaning="follows unless given",
                  lowest=10.0, highest=300.0, relative_to="the identified gait"),
+    ]  # fmt: skip
+
+
+def _weights() -> list[Quantity]:
+    return [
+        Quantity(name=f"{name}{WEIGHT}", unit="", kind="weight", lowest=0.0, highest=1.0,
+                 meaning="weight of this criterion; those not given keep their proportions",
+                 relative_to="the identified weight")
+        for name in ALL
     ]  # fmt: skip
 
 
@@ -143,6 +156,7 @@ QUANTITIES: Mapping[str, Quantity] = {
                  relative_to="the identified body"),
         Quantity(name="pelvis_mass", unit="kg", kind="segment mass", segment="pelvis", lowest=0.5, highest=200.0,
                  meaning="pelvis, and with it a rigid trunk, arms and head", relative_to="the identified body"),
+        *_weights(),
         *(q for side in SIDES for q in _body(side)),
         *(q for side in SIDES for q in _joints(side)),
     ]
@@ -197,6 +211,15 @@ class Present:
                 return float(np.max(quantity.sign * self.states[:, quantity.coordinate])) / DEGREE
             case "torsion" | "orthosis":
                 return 0.0
+            case "weight":
+                return float(self.gait.weights[self.criterion(quantity)])
+
+    def criterion(self, quantity: Quantity) -> int:
+        """Index of a weight's criterion; raises `errors.NotFound` where the gait was explained without it."""
+        name = quantity.name.removesuffix(WEIGHT)
+        if name not in self.gait.criteria:
+            raise NotFound("criterion of the identified gait", name, self.gait.criteria)
+        return self.gait.criteria.index(name)
 
 
 def torque_limit(quantity: Quantity) -> OutputLimit:

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
+import numpy as np
+
 from ..errors import InvalidSubject, NotFound, ProblemError
 from ..multibody.body_change import heavier, stretched, twisted
 from ..multibody.subject import SubjectModel
@@ -12,6 +14,8 @@ from .situation import Situation, Task
 
 SHORTEST, LONGEST = 0.5, 2.0
 """Factors on a length or a mass that are still the same kind of body."""
+ROUNDING = 1e-9
+"""By which weights may miss their sum."""
 INSIDE = 0.05
 """Limits begin this share of the peak, or this many radians, outside the identified gait."""
 
@@ -34,6 +38,9 @@ class Request:
                 top = self.values.get(name.removesuffix("min") + "max", float("inf"))
                 if value >= top:
                     raise InvalidSubject(f"{name} is {value:g} deg, not below the highest angle of {top:g} deg")
+        together = sum(self.values[q.name] for q in self._of_kind("weight"))
+        if together > 1.0 + ROUNDING or (together < 1.0 - ROUNDING and len(self._given_weights()) == self._n_weights):
+            raise InvalidSubject(f"the weights of all criteria add up to one; those that are given to {together:g}")
 
     def situation(self, share: float) -> Situation:
         """Body and task at a share of the way: 0 the identified, 1 what was asked for."""
@@ -45,7 +52,27 @@ class Request:
             lower=limits["lower"],
             upper=limits["upper"],
             torques={torque_limit(q): self._bound(q, share) for q in self._of_kind("torque")},
+            weights=self._weights(share),
         )
+
+    @property
+    def _n_weights(self) -> int:
+        return len(self.present.gait.weights)
+
+    def _given_weights(self) -> dict[int, float]:
+        return {self.present.criterion(q): self.values[q.name] for q in self._of_kind("weight")}
+
+    def _weights(self, share: float) -> np.ndarray | None:
+        """Weights of the criteria, shape (n_criteria,): those not given share the rest as they did; None: unchanged."""
+        given = self._given_weights()
+        if not given:
+            return None
+        old = self.present.gait.weights
+        others = np.array([i not in given for i in range(len(old))])
+        proportions = np.where(others, old if old[others].sum() > 0.0 else 1.0, 0.0)
+        target = (1.0 - sum(given.values())) * proportions / max(float(proportions.sum()), ROUNDING)
+        target[list(given)] = list(given.values())
+        return old + share * (target - old)
 
     def _of_kind(self, *kinds: str) -> list[Quantity]:
         return [QUANTITIES[name] for name in self.values if QUANTITIES[name].kind in kinds]
@@ -150,6 +177,5 @@ def _check(quantity: Quantity, value: float, present: Present) -> None:
         old = present.value(quantity)
         low, high = max(low, SHORTEST * old), min(high, LONGEST * old)
     if not isfinite(value) or not low <= value <= high:
-        raise InvalidSubject(
-            f"{quantity.name} is {value:g} {quantity.unit}: give a value from {low:.4g} to {high:.4g} {quantity.unit}"
-        )
+        unit = f" {quantity.unit}" if quantity.unit else ""
+        raise InvalidSubject(f"{quantity.name} is {value:g}{unit}: give a value from {low:.4g} to {high:.4g}{unit}")

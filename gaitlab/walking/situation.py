@@ -1,4 +1,4 @@
-"""Body and task for which a walk is predicted."""
+"""Body, task and weights for which a walk is predicted."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class Task:
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """A body and a task; everything numeric may change along a continuation."""
+    """A body, a task and weights; everything numeric may change along a continuation."""
 
     subject: SubjectModel
     task: Task
@@ -57,6 +57,8 @@ class Situation:
     """Coordinate to its highest value [rad]."""
     torques: Mapping[OutputLimit, float]
     """Joint torques that must not exceed a bound [N*m]."""
+    weights: np.ndarray | None = None
+    """Of the criteria, on the simplex, shape (n_criteria,); None: those that were identified."""
 
     def parameters(self) -> np.ndarray:
         """Parameters of the walking model (see `model.walking_model`), shape (n_p,)."""

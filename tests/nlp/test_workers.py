@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pytest
 
 from gaitlab.errors import Cancelled, ProblemError, WorkerLost
-from gaitlab.nlp.workers import Workers, usable_processors
+from gaitlab.nlp.workers import Workers, side_by_side, usable_processors
 
 
 @dataclass(frozen=True)
@@ -70,3 +70,24 @@ def test_children_end_with_the_context():
 
 def test_there_is_a_processor():
     assert usable_processors() >= 1
+
+
+def test_threads_share_the_workers(workers):
+    calls = [lambda x=x: workers.map([Square(x), Square(x + 1.0)]) for x in (0.0, 1.0)]
+    first, second = side_by_side(calls)
+    assert [[value for value, _ in found] for found in (first, second)] == [[0.0, 1.0], [1.0, 4.0]]
+
+
+def test_what_a_call_raised_counts_more_than_the_workers_that_it_cost_the_others(workers):
+    def give_up():
+        workers.map([Square(2.0)], lambda _index, _found: cancel())
+
+    def cancel():
+        raise Cancelled
+
+    with pytest.raises(Cancelled):
+        side_by_side([lambda: workers.map([Square(0.0)] * 50), give_up])
+
+
+def test_nothing_side_by_side_is_nothing():
+    assert side_by_side([]) == []

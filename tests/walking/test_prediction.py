@@ -71,6 +71,23 @@ def test_a_little_faster(predicted, gait):
     assert end.length > gait.length
 
 
+def test_what_weighs_more_becomes_less(predicted, gait):
+    """Of minima of weighted sums: the changes of weights times those of the criteria, per distance, are negative."""
+    found = predicted("torque_weight=0.3")
+    end = found.steps[-1]
+    assert found.is_complete, found.reason
+    assert end.is_certified
+    criteria = [
+        step.point.family.mechanical(step.point.situation, step.point.outer.log_time).criteria(step.point.solution.w)
+        * gait.length
+        / step.length
+        for step in (found.steps[0], end)
+    ]
+    product = (end.point.situation.weights - gait.weights) @ ((criteria[1] - criteria[0])[:4] / gait.normalisers)
+    assert product < -1e-6
+    assert criteria[1][1] < criteria[0][1]
+
+
 def test_a_torque_limit_is_kept(predicted, gait):
     name = "right_ankle_plantarflexor_limit"
     limit = parse_request([f"{name}=-3%"], Present(gait)).values[name]

@@ -32,7 +32,7 @@ export function WeightsTab({ resultId, document }: { resultId: string; document:
           <List.Item key={note}>{note}</List.Item>
         ))}
       </List>
-      {!document.prediction && <WhatIf resultId={resultId} />}
+      {!document.prediction && <WhatIf resultId={resultId} criteria={weights.criteria} />}
     </Stack>
   );
 }

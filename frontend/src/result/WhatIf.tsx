@@ -1,4 +1,4 @@
-/** The optimal walk of a changed body or task, as a job. */
+/** The optimal walk of a changed body, task or weights, as a job. */
 import { useState } from "react";
 import { Anchor, Button, Group, NativeSelect, Paper, SimpleGrid, Slider, Text, Title } from "@mantine/core";
 import { useMutation, useQuery } from "@tanstack/react-query";
@@ -9,7 +9,8 @@ import { useI18n } from "../i18n/I18n";
 import { JobCard } from "../jobs/JobCard";
 import type { Job } from "../jobs/progress";
 import { isOver, LOOK_AGAIN_MS } from "../jobs/useJob";
-import { changesOf } from "./changes";
+import { changesOf, weightChangesOf } from "./changes";
+import type { Criterion } from "./document";
 
 /** Quantities that are always offered, each changed by some per cent; others can be added. */
 const OFFERED = ["speed", "mass", "left_ankle_plantarflexor_limit", "right_ankle_plantarflexor_limit"];
@@ -20,15 +21,17 @@ function rangeOf(quantity: string): readonly [number, number] {
   return quantity.endsWith("_limit") ? [-LARGEST, 0] : [-20, 20];
 }
 
-export function WhatIf({ resultId }: { resultId: string }) {
+export function WhatIf({ resultId, criteria }: { resultId: string; criteria: readonly Criterion[] }) {
   const { t } = useI18n();
   const [values, setValues] = useState<Readonly<Record<string, number>>>({});
+  const [weights, setWeights] = useState<Readonly<Record<string, number>>>({});
   const [added, setAdded] = useState<readonly string[]>([]);
+  const changes = [...changesOf(values), ...weightChangesOf(weights, criteria)];
   const predict = useMutation({
     mutationFn: () =>
       unwrap(
         client.POST("/api/v1/analyses", {
-          body: { kind: "predict", result_id: resultId, changes: changesOf(values) },
+          body: { kind: "predict", result_id: resultId, changes },
         }),
       ),
   });
@@ -47,9 +50,23 @@ export function WhatIf({ resultId }: { resultId: string }) {
           />
         ))}
       </SimpleGrid>
+      <Title order={3}>{t("otherWeights")}</Title>
+      <Text size="sm" c="dimmed">
+        {t("otherWeightsHint")}
+      </Text>
+      <SimpleGrid cols={{ base: 1, md: 2 }} my="md" spacing="xl">
+        {criteria.map((each) => (
+          <WeightSlider
+            key={each.name}
+            criterion={each}
+            value={weights[each.name] ?? Math.round(100 * each.weight)}
+            onChange={(value) => setWeights({ ...weights, [each.name]: value })}
+          />
+        ))}
+      </SimpleGrid>
       <Group align="end">
         <MoreQuantities shown={shown} onAdd={(quantity) => setAdded([...added, quantity])} />
-        <Button disabled={changesOf(values).length === 0} loading={predict.isPending} onClick={() => predict.mutate()}>
+        <Button disabled={changes.length === 0} loading={predict.isPending} onClick={() => predict.mutate()}>
           {t("predict")}
         </Button>
       </Group>
@@ -90,12 +107,41 @@ function Change({ quantity, value, onChange }: ChangeProps) {
   );
 }
 
+interface WeightSliderProps {
+  criterion: Criterion;
+  value: number;
+  onChange: (value: number) => void;
+}
+
+/** A weight in per cent; the mark is the identified one. */
+function WeightSlider({ criterion, value, onChange }: WeightSliderProps) {
+  const { name } = useI18n();
+  return (
+    <div>
+      <Text size="sm">
+        {name(criterion.name)}: {value} %
+      </Text>
+      <Slider
+        min={0}
+        max={100}
+        step={1}
+        marks={[{ value: Math.round(100 * criterion.weight) }]}
+        value={value}
+        thumbLabel={name(criterion.name)}
+        label={(shown) => `${shown} %`}
+        onChange={onChange}
+      />
+    </div>
+  );
+}
+
 /** What else may be changed by some per cent. */
 function MoreQuantities({ shown, onAdd }: { shown: readonly string[]; onAdd: (quantity: string) => void }) {
   const { t, name } = useI18n();
   const about = useQuery({ queryKey: ["about"], queryFn: () => unwrap(client.GET("/api/v1/about")) });
   const more = Object.entries(about.data?.prediction_quantities ?? {}).filter(
-    ([quantity, { relative_to }]) => relative_to && !shown.includes(quantity),
+    ([quantity, { relative_to }]) =>
+      relative_to && !quantity.endsWith("_weight") && !shown.includes(quantity),
   );
   return (
     <NativeSelect
