@@ -37,7 +37,7 @@ class Block(NamedTuple):
     """Unknowns of the block before that this one is coupled to, counted within that block, shape (n_used,)."""
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=32)
 def kkt_assembly(structure: SparseStructure) -> "KKTAssembly":
     """The assembly of a structure; a structure is the same object in all problems that share it."""
     return KKTAssembly(structure)
@@ -71,9 +71,11 @@ class KKTAssembly:
         row, first, second = pairs_in_rows(rows, np.arange(len(rows)))
         return first, second, row
 
-    @cached_property
     def _lower(self) -> tuple[np.ndarray, Pattern]:
-        """Which of the entries (H, pairs of J_c, J_g) lie in the lower triangle along time, and where."""
+        """Which of the entries (H, pairs of J_c, J_g) lie in the lower triangle along time, and where.
+
+        Not kept: these are the longest tables of all.
+        """
         s = self.structure
         first, second, _ = self._pairs
         rows = self.position[np.concatenate([s.hess.rows, s.jac_c.cols[first], s.n_w + s.jac_g.rows])]
@@ -86,9 +88,19 @@ class KKTAssembly:
     @cached_property
     def blocks(self) -> list[Block]:
         """The blocks along time."""
+        return self._tables[0]
+
+    @cached_property
+    def _tables(self) -> tuple[list[Block], np.ndarray, np.ndarray]:
+        """The blocks, which entries are kept, and their places in memory, both (n_kept,)."""
+        kept, pattern = self._lower()
+        blocks = self._blocks(pattern)
+        return blocks, kept, self._places(blocks, pattern)
+
+    def _blocks(self, pattern: Pattern) -> list[Block]:
         ends = np.cumsum(self.structure.blocks)
         block_of = np.repeat(np.arange(len(ends)), self.structure.blocks)
-        rows, cols = self._lower[1]
+        rows, cols = pattern
         across = block_of[rows] > block_of[cols]
         if np.any(block_of[rows] > block_of[cols] + 1):
             raise ProblemError("only neighbouring blocks of the order along time may be coupled")
@@ -100,19 +112,18 @@ class KKTAssembly:
             place = last
         return found
 
-    @cached_property
-    def _places(self) -> np.ndarray:
+    def _places(self, blocks: list[Block], pattern: Pattern) -> np.ndarray:
         """Place in memory of each kept entry, shape (n_kept,)."""
-        rows, cols = self._lower[1]
+        rows, cols = pattern
         places = np.empty(len(rows), dtype=np.int64)
         ends = np.cumsum(self.structure.blocks)
         block_of = np.repeat(np.arange(len(ends)), self.structure.blocks)
-        for k, block in enumerate(self.blocks):
+        for k, block in enumerate(blocks):
             here = np.flatnonzero(block_of[rows] == k)
             row, col = rows[here] - block.rows.start, cols[here] - block.rows.start
             own, n = col >= 0, block.rows.stop - block.rows.start
             places[here[own]] = block.diagonal.start + row[own] * n + col[own]
-            before = cols[here[~own]] - (self.blocks[k - 1].rows.start if k else 0)
+            before = cols[here[~own]] - (blocks[k - 1].rows.start if k else 0)
             column = np.searchsorted(block.used, before)
             places[here[~own]] = block.coupling.start + row[~own] * len(block.used) + column
         return places
@@ -132,7 +143,8 @@ class KKTAssembly:
         hess, jac_g, jac_c = derivatives
         first, second, row = self._pairs
         entries = np.concatenate([hess, jac_c[first] * jac_c[second] * sigma[row], jac_g])
-        return np.bincount(self._places, weights=entries[self._lower[0]], minlength=self.blocks[-1].coupling.stop)
+        blocks, kept, places = self._tables
+        return np.bincount(places, weights=entries[kept], minlength=blocks[-1].coupling.stop)
 
     def shifted(self, matrix: np.ndarray, delta: tuple[float, float]) -> np.ndarray:
         """Copy of K, shape (n_entries,), delta_w added for variables and delta_g taken for equations."""
@@ -169,15 +181,15 @@ class KKTAssembly:
     @cached_property
     def bandwidth(self) -> int:
         """Half-bandwidth of the ordered KKT matrix."""
-        rows, cols = self._lower[1]
+        rows, cols = self._lower()[1]
         return int(np.max(rows - cols, initial=1))
 
     def banded_lu(self, matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """LAPACK's banded LU of K, shape (n_entries,), with pivots; None where it is singular."""
-        k, (rows, cols) = self.bandwidth, self._lower[1]
+        k, (rows, cols), places = self.bandwidth, self._lower()[1], self._tables[2]
         band = np.zeros((3 * k + 1, len(self.position)), order="F")
-        band[2 * k + rows - cols, cols] = matrix[self._places]
-        band[2 * k + cols - rows, rows] = matrix[self._places]
+        band[2 * k + rows - cols, cols] = matrix[places]
+        band[2 * k + cols - rows, rows] = matrix[places]
         lu, pivots, info = lapack.dgbtrf(band, k, k, overwrite_ab=True)
         return None if info != 0 else (lu, pivots)
 
