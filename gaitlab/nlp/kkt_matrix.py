@@ -5,7 +5,7 @@ so that one pass gives the factors and, by Haynsworth's formula, the inertia. No
 are refined, and where a backward error stays large a banded LU with partial pivoting takes over.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -21,8 +21,10 @@ REFINED = 1e-15
 ACCEPTED = 1e-11
 """Backward error beyond which the elimination by blocks is given up."""
 REFINEMENTS = 2
-SINGULAR = 1e-15
-"""Right-hand side over matrix times solution, below which the matrix is singular to rounding."""
+SUSPICIOUS = 1e-15
+"""Right-hand side over matrix times solution, below which the matrix may be singular to rounding."""
+SINGULAR = 0.1
+"""It is where one more refinement would change the solution by this share of it."""
 
 
 class Block(NamedTuple):
@@ -232,14 +234,19 @@ class KKTFactors:
             if error <= REFINED or refinement == REFINEMENTS:
                 break
             x = x + self._eliminate(residual)
-        return x if error <= ACCEPTED and not self._is_meaningless(x, b) else self._pivoted(b)
+        return x if error <= ACCEPTED and not self._is_meaningless(x, b, self._eliminate) else self._pivoted(b)
 
     @cached_property
     def _size(self) -> float:
         return float(np.max(np.abs(self.matrix)))
 
-    def _is_meaningless(self, x: np.ndarray, b: np.ndarray) -> bool:
-        return bool(np.any(SINGULAR * self._size * _columns(x) > _columns(b)))
+    def _is_meaningless(self, x: np.ndarray, b: np.ndarray, solve: Callable[[np.ndarray], np.ndarray]) -> bool:
+        suspicious = SUSPICIOUS * self._size * _columns(x) > _columns(b)
+        if not np.any(suspicious):
+            return False
+        # Badly scaled matrices look like that, too.
+        correction = solve(b - self._product(x))
+        return bool(np.any(suspicious & ~(_columns(correction) <= SINGULAR * _columns(x))))
 
     def _eliminate(self, b: np.ndarray) -> np.ndarray:
         x = np.empty_like(b)
@@ -278,9 +285,13 @@ class KKTFactors:
     def _pivoted(self, b: np.ndarray) -> np.ndarray | None:
         if self._lu is None:
             return None
-        k = self.assembly.bandwidth
-        x = lapack.dgbtrs(self._lu[0], k, k, b, self._lu[1])[0]
-        return None if not np.all(np.isfinite(x)) or self._is_meaningless(x, b) else x
+        (lu, pivots), k = self._lu, self.assembly.bandwidth
+
+        def solve(rhs: np.ndarray) -> np.ndarray:
+            return np.asarray(lapack.dgbtrs(lu, k, k, rhs, pivots)[0])
+
+        x = solve(b)
+        return None if not np.all(np.isfinite(x)) or self._is_meaningless(x, b, solve) else x
 
 
 def _columns(x: np.ndarray) -> np.ndarray:

@@ -167,3 +167,14 @@ def test_far_couplings_are_refused(chain):
     assembly = KKTAssembly(SparseStructure(**(vars(s) | {"hess": far})))
     with pytest.raises(ProblemError, match="neighbouring blocks"):
         _ = assembly.blocks
+
+
+def test_bad_scaling_is_not_taken_for_a_singular_matrix():
+    """A barrier weight of 1e18 beside a curvature of one."""
+    none, i = Pattern(np.zeros(0, int), np.zeros(0, int)), np.arange(2)
+    structure = SparseStructure(
+        n_w=2, n_g=0, n_c=0, jac_g=none, jac_c=none, order=i, blocks=np.array([1, 1]), hess=Pattern(i, i)
+    )
+    assembly, nothing = KKTAssembly(structure), np.zeros(0)
+    factors = assembly.factorise(assembly.matrix((np.array([1e18, 1.0]), nothing, nothing), nothing))
+    np.testing.assert_allclose(factors.solve(np.array([[0.0, 1e18], [1.0, 0.0]])), [[0.0, 1.0], [1.0, 0.0]])
