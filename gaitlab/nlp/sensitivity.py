@@ -23,7 +23,9 @@ class Sensitivity:
         self.solution, self.structure = solution, problem.structure
         self.assembly = kkt_assembly(self.structure)
         self.sigma = solution.lam_c / solution.s
-        self.derivatives: Derivatives = problem.derivatives(solution.w, solution.lam_g, solution.lam_c)
+        found = problem.derivatives(solution.w, solution.lam_g, solution.lam_c)
+        # What it is made from is large and would be kept as long as this.
+        self.derivatives: Derivatives = found._replace(gauss_newton=None)
         self._matrix = self.assembly.matrix(
             (self.derivatives.hess, self.derivatives.jac_g, self.derivatives.jac_c), self.sigma
         )
