@@ -16,11 +16,11 @@ from scipy.linalg import blas, lapack
 from ..errors import ProblemError
 from .sparse_problem import Pattern, SparseStructure, pairs_in_rows
 
-REFINED = 1e-15
-"""Backward error at which a solution needs no refinement."""
 ACCEPTED = 1e-11
 """Backward error beyond which the elimination by blocks is given up."""
 REFINEMENTS = 2
+"""Always done: beside barrier weights a small backward error says nothing about the rows of small entries, and the
+sensitivities of a search for weights and states need those."""
 SUSPICIOUS = 1e-15
 """Right-hand side over matrix times solution, below which the matrix may be singular to rounding."""
 SINGULAR = 0.1
@@ -227,13 +227,11 @@ class KKTFactors:
         return None if x is None else x[position].reshape(rhs.shape)
 
     def _refined(self, b: np.ndarray) -> np.ndarray | None:
-        x, error = self._eliminate(b), np.inf
-        for refinement in range(REFINEMENTS + 1):
-            residual = b - self._product(x)
-            error = float(np.max(_columns(residual) / (self._size * _columns(x) + _columns(b)), initial=0.0))
-            if error <= REFINED or refinement == REFINEMENTS:
-                break
-            x = x + self._eliminate(residual)
+        x = self._eliminate(b)
+        for _ in range(REFINEMENTS):
+            x = x + self._eliminate(b - self._product(x))
+        residual = b - self._product(x)
+        error = float(np.max(_columns(residual) / (self._size * _columns(x) + _columns(b)), initial=0.0))
         return x if error <= ACCEPTED and not self._is_meaningless(x, b, self._eliminate) else self._pivoted(b)
 
     @cached_property
