@@ -10,8 +10,9 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from queue import SimpleQueue
+from threading import Lock
 from types import TracebackType
 from typing import Protocol, Self, TypeVar, cast
 
@@ -66,6 +67,7 @@ class Workers:
             subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
             for _ in range(count)
         ]
+        self._closing = Lock()
         self._idle: SimpleQueue[subprocess.Popen[bytes]] = SimpleQueue()
         for process in self._processes:
             self._idle.put(process)
@@ -79,10 +81,17 @@ class Workers:
         self.close()
 
     def close(self) -> None:
-        """End the processes, whatever they are doing."""
+        """End the processes, whatever they are doing; threads that wait for them get no result."""
         for process in self._processes:
             process.kill()
-            process.communicate()
+        with self._closing:
+            for process in self._processes:
+                process.wait()
+                for pipe in (process.stdin, process.stdout):
+                    # What was not sent any more cannot be flushed.
+                    with suppress(OSError, ValueError):
+                        if pipe is not None:
+                            pipe.close()
 
     def map(self, tasks: Sequence[Task[Result]], done: Callable[[int, Result], None] | None = None) -> list[Result]:
         """Results of the tasks in their order. `done(index, result)` is called as they come and may raise.
@@ -122,7 +131,9 @@ class Workers:
                 f"a computing process ended without a result (code {process.wait()}); "
                 "the machine may be out of memory: close other programs or use one process"
             ) from error
-        self._idle.put(process)
+        finally:
+            # A lost process, too: whoever waits for one must learn that it is lost.
+            self._idle.put(process)
         if isinstance(outcome, Exception):
             raise outcome
         return cast("Result", outcome)
