@@ -15,7 +15,7 @@ from ..errors import ProblemError
 from ..nlp.sparse_solution import Status
 from .problem import LowerLevel, Response
 from .result import WeightEstimate
-from .simplex_step import simplex_minimiser
+from .simplex_step import damped_minimiser
 from .uncertainty import weight_uncertainty
 
 Progress = Callable[[int, float], None]
@@ -109,10 +109,8 @@ class _Search:
 
     def _subproblem(self, jacobian: np.ndarray) -> np.ndarray:
         """Minimise the damped quadratic model of the loss over the simplex."""
-        theta, gradient = self.state.theta, jacobian.T @ self.state.response.residual
-        gauss_newton = jacobian.T @ jacobian
-        scale = np.diag(np.diag(gauss_newton) + 1e-12 * np.trace(gauss_newton))
-        return simplex_minimiser(theta, gradient, gauss_newton + self.second_order + self.damping * scale)
+        residual = self.state.response.residual
+        return damped_minimiser(self.state.theta, residual, jacobian, self.damping, self.second_order)
 
     def _learn(self, jacobian: np.ndarray, trial: _State, step: np.ndarray) -> None:
         """Update the second-order part so that it maps the step to the change of J at the new residual."""

@@ -4,6 +4,24 @@ import numpy as np
 from scipy.optimize import nnls
 
 
+def damped_minimiser(
+    theta: np.ndarray,
+    residual: np.ndarray,
+    jacobian: np.ndarray,
+    damping: float,
+    second_order: np.ndarray | None = None,
+) -> np.ndarray:
+    """Weights that minimise 1/2 |r + J (t - theta)|^2, damped as by Marquardt, on the simplex, shape (n_theta,).
+
+    The damping counts relative to the diagonal of J'J; theta has shape (n_theta,), residual (n_r,), jacobian
+    (n_r, n_theta), and `second_order` is what Gauss-Newton leaves out of the Hessian, shape (n_theta, n_theta).
+    """
+    hessian = jacobian.T @ jacobian
+    scale = np.diag(np.diag(hessian) + 1e-12 * np.trace(hessian))
+    hessian = hessian + damping * scale + (0.0 if second_order is None else second_order)
+    return simplex_minimiser(theta, jacobian.T @ residual, hessian)
+
+
 def simplex_minimiser(theta: np.ndarray, gradient: np.ndarray, hessian: np.ndarray) -> np.ndarray:
     """Weights t >= 0 with sum 1 that minimise g'(t - theta) + 1/2 (t - theta)' H (t - theta), shape (n_theta,).
 

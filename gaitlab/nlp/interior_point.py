@@ -100,15 +100,13 @@ class _Run:
         self.mu = method.mu_initial
         self.delta, self.last_delta, self.delta_g = 0.0, 0.0, 0.0
         self.tiny_steps = 0
-        self.largest = np.inf
         self.filter = Filter()
 
     def solve(self, start: SparseSolution | np.ndarray) -> SparseSolution:
         """Iterate until converged, stalled or out of iterations."""
         x = self._first(start)
         values = self.problem.values(x.w)
-        self.largest = LARGEST * max(1.0, Merit(values, x.s, self.mu).violation)
-        self.filter = Filter(self.largest)
+        self.filter = Filter(LARGEST * max(1.0, Merit(values, x.s, self.mu).violation))
         for iteration in range(self.method.max_iter + 1):
             derivatives = self.problem.derivatives(x.w, x.lam_g, x.lam_c)
             if not _finite(values, derivatives):
@@ -147,7 +145,7 @@ class _Run:
             if self._error(x, values, derivatives, self.mu) > method.kappa_error * self.mu:
                 return
             self.mu = max(method.mu_final, min(method.mu_linear * self.mu, self.mu**method.mu_power))
-            self.filter = Filter(self.largest)
+            self.filter = Filter(self.filter.largest)
 
     def _stationarity(self, x: Iterate, derivatives: Derivatives) -> np.ndarray:
         s = self.structure
@@ -184,9 +182,14 @@ class _Run:
         """Newton direction of a problem made convex on the null space of the constraints, or None."""
         sigma = x.lam_c / x.s
         matrix = self.assembly.matrix((derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma)
-        if self.method.gauss_newton and derivatives.gauss_newton is not None and not self._is_convex(matrix):
-            matrix = self.assembly.matrix((derivatives.gauss_newton(), derivatives.jac_g, derivatives.jac_c), sigma)
-        delta, factors = self._convexify(matrix)
+        delta, factors = self.delta, None
+        if self.method.gauss_newton and derivatives.gauss_newton is not None:
+            factors = self._of_minimum(matrix, delta)
+            if factors is None:
+                hess = derivatives.gauss_newton()
+                matrix = self.assembly.matrix((hess, derivatives.jac_g, derivatives.jac_c), sigma)
+        if factors is None:
+            delta, factors = self._convexify(matrix)
         for delta_g in DEPENDENT[DEPENDENT.index(self.delta_g) :]:
             if delta_g != self.delta_g or factors is None:
                 factors = self.assembly.factorise(self.assembly.shifted(matrix, (delta, delta_g)))
@@ -195,9 +198,10 @@ class _Run:
                 return step
         return None
 
-    def _is_convex(self, matrix: np.ndarray) -> bool:
-        factors = self.assembly.factorise(self.assembly.shifted(matrix, (self.delta, self.delta_g)))
-        return factors is not None and factors.negative_eigenvalues == self.structure.n_g
+    def _of_minimum(self, matrix: np.ndarray, delta: float) -> KKTFactors | None:
+        """Factors of the matrix with this regularisation; None where its inertia is not that of a minimum."""
+        factors = self.assembly.factorise(self.assembly.shifted(matrix, (delta, self.delta_g)))
+        return factors if factors is not None and factors.negative_eigenvalues == self.structure.n_g else None
 
     def _convexify(self, matrix: np.ndarray) -> tuple[float, KKTFactors | None]:
         """Smallest multiple of the identity, within a factor, that gives the right inertia, and the factors then."""
@@ -212,10 +216,10 @@ class _Run:
         return delta, factors
 
     def _right_inertia(self, matrix: np.ndarray) -> tuple[float, KKTFactors | None]:
-        delta, n_g = self.delta, self.structure.n_g
+        delta = self.delta
         while delta < LARGEST_DELTA:
-            factors = self.assembly.factorise(self.assembly.shifted(matrix, (delta, self.delta_g)))
-            if factors is not None and factors.negative_eigenvalues == n_g:
+            factors = self._of_minimum(matrix, delta)
+            if factors is not None:
                 return delta, factors
             delta = max(self.method.delta_first if self.last_delta == 0.0 else self.last_delta / 3.0, 6.0 * delta)
         return delta, None
@@ -269,7 +273,7 @@ class _Run:
             w, s = x.w + alpha * step.w, x.s + alpha * step.s
             new = self.problem.values(w)
             if Merit(new, s, self.mu).violation < (1.0 - 1e-2 * alpha) * before:
-                self.filter = Filter(self.largest)
+                self.filter = Filter(self.filter.largest)
                 return Iterate(w, s, x.lam_g, np.clip(x.lam_c, 0.1 * self.mu / s, 10.0 * self.mu / s)), new
             alpha /= 2.0
         return None

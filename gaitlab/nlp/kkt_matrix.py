@@ -96,12 +96,12 @@ class KKTAssembly:
     def _tables(self) -> tuple[list[Block], np.ndarray, np.ndarray]:
         """The blocks, which entries are kept, and their places in memory, both (n_kept,)."""
         kept, pattern = self._lower()
-        blocks = self._blocks(pattern)
-        return blocks, kept, self._places(blocks, pattern)
+        block_of = np.repeat(np.arange(len(self.structure.blocks)), self.structure.blocks)
+        blocks = self._blocks(pattern, block_of)
+        return blocks, kept, _places(blocks, pattern, block_of)
 
-    def _blocks(self, pattern: Pattern) -> list[Block]:
+    def _blocks(self, pattern: Pattern, block_of: np.ndarray) -> list[Block]:
         ends = np.cumsum(self.structure.blocks)
-        block_of = np.repeat(np.arange(len(ends)), self.structure.blocks)
         rows, cols = pattern
         across = block_of[rows] > block_of[cols]
         if np.any(block_of[rows] > block_of[cols] + 1):
@@ -113,22 +113,6 @@ class KKTAssembly:
             found.append(Block(slice(end - n, end), slice(place, middle), slice(middle, last), used))
             place = last
         return found
-
-    def _places(self, blocks: list[Block], pattern: Pattern) -> np.ndarray:
-        """Place in memory of each kept entry, shape (n_kept,)."""
-        rows, cols = pattern
-        places = np.empty(len(rows), dtype=np.int64)
-        ends = np.cumsum(self.structure.blocks)
-        block_of = np.repeat(np.arange(len(ends)), self.structure.blocks)
-        for k, block in enumerate(blocks):
-            here = np.flatnonzero(block_of[rows] == k)
-            row, col = rows[here] - block.rows.start, cols[here] - block.rows.start
-            own, n = col >= 0, block.rows.stop - block.rows.start
-            places[here[own]] = block.diagonal.start + row[own] * n + col[own]
-            before = cols[here[~own]] - (blocks[k - 1].rows.start if k else 0)
-            column = np.searchsorted(block.used, before)
-            places[here[~own]] = block.coupling.start + row[~own] * len(block.used) + column
-        return places
 
     @cached_property
     def _diagonal(self) -> np.ndarray:
@@ -290,6 +274,21 @@ class KKTFactors:
 
         x = solve(b)
         return None if not np.all(np.isfinite(x)) or self._is_meaningless(x, b, solve) else x
+
+
+def _places(blocks: Sequence[Block], pattern: Pattern, block_of: np.ndarray) -> np.ndarray:
+    """Place in memory of each kept entry, shape (n_kept,), from the block of each unknown along time, shape (n,)."""
+    rows, cols = pattern
+    places = np.empty(len(rows), dtype=np.int64)
+    for k, block in enumerate(blocks):
+        here = np.flatnonzero(block_of[rows] == k)
+        row, col = rows[here] - block.rows.start, cols[here] - block.rows.start
+        own, n = col >= 0, block.rows.stop - block.rows.start
+        places[here[own]] = block.diagonal.start + row[own] * n + col[own]
+        before = cols[here[~own]] - (blocks[k - 1].rows.start if k else 0)
+        column = np.searchsorted(block.used, before)
+        places[here[~own]] = block.coupling.start + row[~own] * len(block.used) + column
+    return places
 
 
 def _columns(x: np.ndarray) -> np.ndarray:

@@ -44,17 +44,9 @@ def worker_pool(count: int = 0) -> "AbstractContextManager[Workers | None]":
     return Workers(count) if count > 1 else nullcontext()
 
 
-def side_by_side(calls: Sequence[Callable[[], Result]]) -> list[Result]:
-    """Results of calls that mostly wait for workers, each in a thread of its own.
-
-    Raises what a call raised; where one gives up, the others lose their workers, which is told only if nothing else is.
-    """
-    with ThreadPoolExecutor(max(len(calls), 1)) as pool:
-        futures = [pool.submit(call) for call in calls]
-        raised = [error for error in (future.exception() for future in futures) if error is not None]
-    for error in sorted(raised, key=lambda error: isinstance(error, WorkerLost)):
-        raise error
-    return [future.result() for future in futures]
+def results_of(calls: Sequence[Callable[[], Result]], workers: "Workers | None") -> list[Result]:
+    """Results of calls that do not depend on each other: side by side where there are workers, else in turn."""
+    return [call() for call in calls] if workers is None else workers.side_by_side(calls)
 
 
 class Workers:
@@ -92,6 +84,24 @@ class Workers:
                     with suppress(OSError, ValueError):
                         if pipe is not None:
                             pipe.close()
+
+    def side_by_side(self, calls: Sequence[Callable[[], Result]]) -> list[Result]:
+        """Results of calls that mostly wait for these workers, each in a thread of its own.
+
+        Raises what a call raised; where one gives up, the others lose their workers, which is told only if nothing else
+        is.
+        """
+        with ThreadPoolExecutor(max(len(calls), 1)) as pool:
+            futures = [pool.submit(call) for call in calls]
+            try:
+                raised = [error for error in (future.exception() for future in futures) if error is not None]
+            except BaseException:
+                # Ctrl+C: the threads end when their processes do.
+                self.close()
+                raise
+        for error in sorted(raised, key=lambda error: isinstance(error, WorkerLost)):
+            raise error
+        return [future.result() for future in futures]
 
     def map(self, tasks: Sequence[Task[Result]], done: Callable[[int, Result], None] | None = None) -> list[Result]:
         """Results of the tasks in their order. `done(index, result)` is called as they come and may raise.

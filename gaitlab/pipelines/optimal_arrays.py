@@ -10,7 +10,7 @@ from ..multibody.kinematics import point_positions
 from ..multibody.subject import SubjectModel
 from ..transcription.hermite import GAUSS_POINTS
 from ..transcription.mechanical_problem import MechanicalProblem
-from ..walking.criteria import ALL
+from ..walking.criteria import positions
 from ..walking.explanation import Explanation
 from ..walking.model import POINTS, ROOT
 from .gait_frame import gait_to_lab
@@ -52,8 +52,7 @@ class ModelledStride:
 
     def shares(self) -> np.ndarray:
         """Parts of the weighted criteria at the Gauss points, shape (2 N, n_criteria)."""
-        names = list(ALL)
-        columns = [names.index(name) for name in self.criteria]
+        columns = positions(self.criteria)
         cost = (self.problem.running_criteria(self.w) * self.problem.data.theta)[:, columns]
         return cost / np.maximum(cost.sum(axis=1, keepdims=True), np.finfo(float).tiny)
 

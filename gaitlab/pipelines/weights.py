@@ -17,7 +17,7 @@ from ..mocap.cycles import full_strides
 from ..mocap.recording import Event, Recording
 from ..multibody.dynamics import layout_of
 from ..multibody.subject import SubjectModel
-from ..nlp.workers import Workers, side_by_side, worker_pool
+from ..nlp.workers import Workers, results_of, worker_pool
 from ..walking.contact_phases import GaitEvents, contact_phases, foot_directions
 from ..walking.contact_schedule import Landing, ScheduleSettings, contact_stages
 from ..walking.criteria import by_name
@@ -206,7 +206,7 @@ def _explain_all(
             _StrideTask(request=request, cycle=cycle, stride=stride, with_others=not explained and i == 0)
             for i, (cycle, stride) in enumerate(waiting[:wanted])
         ]
-        outcomes = side_by_side([partial(task.run, in_turn, workers) for task in tasks])
+        outcomes = results_of([partial(task.run, in_turn, workers) for task in tasks], workers)
         if not explained and isinstance(outcomes[0], str):
             # The next one is the first now.
             outcomes = outcomes[:1]

@@ -5,7 +5,7 @@ expression given here. Torques in N*m, lengths in m; the quantities are compared
 the tracked walk, so their units do not matter for the weights.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
@@ -103,3 +103,9 @@ def by_name(name: str) -> Criterion:
     if name not in ALL:
         raise NotFound("criterion", name, ALL)
     return ALL[name]
+
+
+def positions(names: Sequence[str]) -> list[int]:
+    """Where criteria stand among `ALL`; raises `errors.NotFound` as `by_name`."""
+    every = list(ALL)
+    return [every.index(by_name(name).name) for name in names]

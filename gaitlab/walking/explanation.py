@@ -1,10 +1,9 @@
 """Why this stride looks as it does: tracking, the pure optimal control problem, and the weights that fit best."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from time import perf_counter
-from typing import TypeVar
 
 import numpy as np
 
@@ -12,12 +11,10 @@ from ..bilevel.implicit_gauss_newton import ImplicitGaussNewton
 from ..bilevel.result import WeightEstimate, rms
 from ..errors import NotConverged
 from ..nlp.sparse_solution import Status
-from ..nlp.workers import Workers, side_by_side
+from ..nlp.workers import Workers, results_of
 from .identification import IdentificationSettings, WalkLevel, WalkOptimum
 from .joint_search import JointSearch, MeasuredFrames, closer_stride
 from .tracking import MeasuredStride, TrackedWalk, TrackingSettings, track
-
-T = TypeVar("T")
 
 CERTIFICATE = 1e-6
 """Largest first-order residual of an accepted solution."""
@@ -114,7 +111,7 @@ def explain_tracked(
     best = min(candidates, key=lambda candidate: rms(candidate[1].residual))
     # The loss has several minima: the middle of the simplex is tried even where a corner fits better at first.
     starts = [best] if best is candidates[0] else [best, candidates[0]]
-    estimates = _all_of([partial(_search, level, settings.method, start, report) for start in starts], workers)
+    estimates = results_of([partial(_search, level, settings.method, start, report) for start in starts], workers)
     estimate = min(estimates, key=lambda found: found.rms)
     return _explanation(level, estimate, equal, singles)
 
@@ -196,12 +193,7 @@ def single_criteria(
         partial(level.respond_from_afar, vertex, start.solution, _arcs(report, f"only {name}"))
         for vertex, name in zip(vertices, level.settings.criteria, strict=True)
     ]
-    return list(zip(vertices, _all_of(calls, level.workers), strict=True))
-
-
-def _all_of(calls: Sequence[Callable[[], T]], workers: Workers | None) -> list[T]:
-    """Results of calls that do not depend on each other: side by side, so that no worker waits for the last arc."""
-    return side_by_side(calls) if workers is not None else [call() for call in calls]
+    return list(zip(vertices, results_of(calls, level.workers), strict=True))
 
 
 def _solved(response: WalkOptimum) -> bool:

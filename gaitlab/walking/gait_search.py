@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..bilevel.simplex_step import simplex_minimiser
+from ..bilevel.simplex_step import damped_minimiser
 from .point_foot_gait import GaitLevel, GaitOptimum
 
 DAMPING = 1e-3
@@ -17,8 +17,5 @@ def first_estimate(level: GaitLevel, theta: np.ndarray) -> tuple[np.ndarray, Gai
     needed.
     """
     tracked = level.track(theta)
-    jacobian = tracked.jacobian()
-    hessian = jacobian.T @ jacobian
-    hessian += DAMPING * np.diag(np.diag(hessian))
-    found = simplex_minimiser(theta, jacobian.T @ tracked.residual, hessian)
+    found = damped_minimiser(theta, tracked.residual, tracked.jacobian(), DAMPING)
     return found, level.follow(found, 0.0, tracked)

@@ -25,7 +25,7 @@ from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalProblem, MechanicalStructure
 from .arcs import Arcs
-from .criteria import ALL, THESIS, by_name
+from .criteria import ALL, THESIS, positions
 from .given_states import coloured_moves
 from .model import ROOT, walking_functions
 from .tracking import N_FORCES, TrackedWalk
@@ -117,9 +117,8 @@ class WalkLevel:
 
     def __init__(self, tracked: TrackedWalk, settings: IdentificationSettings, workers: Workers | None = None) -> None:
         self.tracked, self.settings, self.workers = tracked, settings, workers
-        names = list(ALL)
-        self.indices = [names.index(by_name(name).name) for name in settings.criteria]
-        self.torque = names.index("torque")
+        self.indices = positions(settings.criteria)
+        (self.torque,) = positions(["torque"])
         self.all_normalisers = tracked.problem.criteria(tracked.solution.w)
         self.normalisers = self.all_normalisers[self.indices]
         duration = float(tracked.stride.times[-1] - tracked.stride.times[0])

@@ -15,7 +15,7 @@ from ..nlp.sparse_solution import SparseSolution, Status, certify
 from ..ocp.mechanical import ContactStage
 from ..transcription.mechanical_layout import Boundary, ContactRow, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
-from .criteria import ALL
+from .criteria import positions
 from .identification import WalkOptimum
 from .model import ROOT, walking_functions
 from .tracking import N_FORCES, MeasuredStride
@@ -64,7 +64,7 @@ class IdentifiedGait:
         if weights is None:
             return raw
         shift = np.zeros_like(raw)
-        shift[[list(ALL).index(name) for name in self.criteria]] = (weights - self.weights) / self.normalisers
+        shift[positions(self.criteria)] = (weights - self.weights) / self.normalisers
         return raw + shift
 
     @property

@@ -29,7 +29,7 @@ from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
 from .arcs import ArcTask, solve_in_turn
-from .criteria import ALL, THESIS
+from .criteria import ALL, THESIS, positions
 from .gait_data import MeasuredGait, PointFootGait
 from .gait_guess import Curves, StandingPoints, smooth_states
 from .model import POINTS, ROOT, walking_functions
@@ -169,9 +169,9 @@ class GaitLevel:
         Workers solve the stages side by side.
         """
         self.workers, self._key = workers, uuid4().hex
-        self._tracked: GaitOptimum | None = None
+        self._tracked: dict[int, SparseSolution] = {}
         self.gait, self.measured, self.settings = gait, measured, settings or GaitLevelSettings()
-        self.indices = [list(ALL).index(name) for name in THESIS]
+        self.indices = positions(THESIS)
         self.n_q = gait.subject.n_q
         subject = replace(gait.subject, contacts={name: gait.subject.contacts[name] for name in POINTS})
         self.layout = layout_of(subject)
@@ -230,11 +230,8 @@ class GaitLevel:
         problems, near = self.problems(theta), replace(self.settings.solver, max_iter=NEARBY)
         found = self._solve(problems, dict(enumerate(self.split(start))), (near,))
         lost = [k for k, x in found.items() if x.status is not Status.SOLVED]
-        if lost and self._tracked is not None:
-            starts = {k: self._tracked.solutions[k] for k in lost}
-            for tracking in (*PATH[1:], 0.0):
-                starts = self._solve(self.problems(theta, tracking), starts, self._patient)
-            found |= starts
+        if lost and self._tracked:
+            found |= self._along(theta, (*PATH[1:], 0.0), {k: self._tracked[k] for k in lost})
         elif lost:
             found |= self._solve(problems, {k: found[k] for k in lost}, self._far)
         return GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
@@ -248,18 +245,24 @@ class GaitLevel:
         problems = self.problems(theta, PATH[0])
         convex = replace(self._far[0], gauss_newton=True, max_iter=PATIENCE)
         guesses = {k: self._guess(problem, k) for k, problem in enumerate(problems)}
-        found = self._solve(problems, guesses, (convex, *self._far))
-        self._tracked = GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
-        tracked = self._tracked
-        for tracking in PATH[1:]:
-            tracked = self.follow(theta, tracking, tracked)
-        return tracked
+        self._tracked = self._solve(problems, guesses, (convex, *self._far))
+        found = self._along(theta, PATH[1:], self._tracked)
+        return GaitOptimum(self, self.problems(theta, PATH[-1]), [found[k] for k in range(len(problems))])
 
     def follow(self, theta: np.ndarray, tracking: float, start: GaitOptimum) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), and a weight of tracking from an optimum for others."""
+        found = self._along(theta, (tracking,), dict(enumerate(start.solutions)))
         problems = self.problems(theta, tracking)
-        found = self._solve(problems, dict(enumerate(start.solutions)), self._patient)
         return GaitOptimum(self, problems, [found[k] for k in range(len(problems))])
+
+    def _along(
+        self, theta: np.ndarray, path: Sequence[float], starts: dict[int, SparseSolution]
+    ) -> dict[int, SparseSolution]:
+        """Follow the optima of some stages along weights of tracking."""
+        methods = (replace(self.settings.solver, max_iter=PATIENCE), *self._far)
+        for tracking in path:
+            starts = self._solve(self.problems(theta, tracking), starts, methods)
+        return starts
 
     def from_forces(self, theta: np.ndarray, forces: Sequence[np.ndarray]) -> GaitOptimum:
         """Solve for theta, shape (n_theta,), from the first states and forces of the floor at the Gauss points.
@@ -282,10 +285,6 @@ class GaitLevel:
             x = Iterate(w, np.ones(s.n_c), np.zeros(s.n_g), np.zeros(s.n_c))
             found.append(certify(problem, x, mu=1.0, iterations=0, status=Status.ITERATION_LIMIT))
         return GaitOptimum(self, problems, found)
-
-    @property
-    def _patient(self) -> tuple[InteriorPoint, ...]:
-        return (replace(self.settings.solver, max_iter=PATIENCE), *self._far)
 
     @property
     def _far(self) -> tuple[InteriorPoint, ...]:

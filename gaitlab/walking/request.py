@@ -38,8 +38,9 @@ class Request:
                 top = self.values.get(name.removesuffix("min") + "max", float("inf"))
                 if value >= top:
                     raise InvalidSubject(f"{name} is {value:g} deg, not below the highest angle of {top:g} deg")
-        together = sum(self.values[q.name] for q in self._of_kind("weight"))
-        if together > 1.0 + ROUNDING or (together < 1.0 - ROUNDING and len(self._given_weights()) == self._n_weights):
+        given = self._given_weights()
+        together, all_given = sum(given.values()), len(given) == len(self.present.gait.weights)
+        if together > 1.0 + ROUNDING or (all_given and together < 1.0 - ROUNDING):
             raise InvalidSubject(f"the weights of all criteria add up to one; those that are given to {together:g}")
 
     def situation(self, share: float) -> Situation:
@@ -54,10 +55,6 @@ class Request:
             torques={torque_limit(q): self._bound(q, share) for q in self._of_kind("torque")},
             weights=self._weights(share),
         )
-
-    @property
-    def _n_weights(self) -> int:
-        return len(self.present.gait.weights)
 
     def _given_weights(self) -> dict[int, float]:
         return {self.present.criterion(q): self.values[q.name] for q in self._of_kind("weight")}

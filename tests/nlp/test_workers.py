@@ -1,14 +1,16 @@
 """Processes of our own: results in order, errors carried over, lost children named."""
 
 import os
+import signal
 import sys
+import threading
 import time
 from dataclasses import dataclass
 
 import pytest
 
 from gaitlab.errors import Cancelled, ProblemError, WorkerLost
-from gaitlab.nlp.workers import Workers, side_by_side, usable_processors
+from gaitlab.nlp.workers import Workers, results_of, usable_processors
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ def test_there_is_a_processor():
 
 def test_threads_share_the_workers(workers):
     calls = [lambda x=x: workers.map([Square(x), Square(x + 1.0)]) for x in (0.0, 1.0)]
-    first, second = side_by_side(calls)
+    first, second = workers.side_by_side(calls)
     assert [[value for value, _ in found] for found in (first, second)] == [[0.0, 1.0], [1.0, 4.0]]
 
 
@@ -86,8 +88,27 @@ def test_what_a_call_raised_counts_more_than_the_workers_that_it_cost_the_others
         raise Cancelled
 
     with pytest.raises(Cancelled):
-        side_by_side([lambda: workers.map([Square(0.0)] * 50), give_up])
+        workers.side_by_side([lambda: workers.map([Square(0.0)] * 50), give_up])
 
 
-def test_nothing_side_by_side_is_nothing():
-    assert side_by_side([]) == []
+def test_nothing_side_by_side_is_nothing(workers):
+    assert workers.side_by_side([]) == []
+
+
+def test_without_workers_calls_follow_each_other_in_this_thread():
+    threads = results_of([threading.get_ident, threading.get_ident], None)
+    assert threads == [threading.get_ident()] * 2
+
+
+@dataclass(frozen=True)
+class Sleep:
+    def run(self):
+        time.sleep(60.0)
+
+
+def test_an_interruption_ends_all_that_runs_side_by_side(workers):
+    began = time.monotonic()
+    threading.Timer(0.5, signal.pthread_kill, (threading.get_ident(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        workers.side_by_side([lambda: workers.map([Sleep()]), lambda: workers.map([Sleep()])])
+    assert time.monotonic() - began < 30.0

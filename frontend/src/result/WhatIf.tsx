@@ -45,6 +45,9 @@ export function WhatIf({ resultId, criteria }: { resultId: string; criteria: rea
           <Change
             key={each}
             quantity={each}
+            range={rangeOf(each)}
+            step={5}
+            unchanged={0}
             value={values[each] ?? 0}
             onChange={(value) => setValues({ ...values, [each]: value })}
           />
@@ -56,9 +59,12 @@ export function WhatIf({ resultId, criteria }: { resultId: string; criteria: rea
       </Text>
       <SimpleGrid cols={{ base: 1, md: 2 }} my="md" spacing="xl">
         {criteria.map((each) => (
-          <WeightSlider
+          <Change
             key={each.name}
-            criterion={each}
+            quantity={each.name}
+            range={[0, 100]}
+            step={1}
+            unchanged={Math.round(100 * each.weight)}
             value={weights[each.name] ?? Math.round(100 * each.weight)}
             onChange={(value) => setWeights({ ...weights, [each.name]: value })}
           />
@@ -80,13 +86,17 @@ export function WhatIf({ resultId, criteria }: { resultId: string; criteria: rea
 
 interface ChangeProps {
   quantity: string;
+  range: readonly [number, number];
+  step: number;
+  /** Value that changes nothing: the mark. */
+  unchanged: number;
   value: number;
   onChange: (value: number) => void;
 }
 
-function Change({ quantity, value, onChange }: ChangeProps) {
+/** A slider in per cent. */
+function Change({ quantity, range: [low, high], step, unchanged, value, onChange }: ChangeProps) {
   const { name } = useI18n();
-  const [low, high] = rangeOf(quantity);
   return (
     <div>
       <Text size="sm">
@@ -95,39 +105,11 @@ function Change({ quantity, value, onChange }: ChangeProps) {
       <Slider
         min={low}
         max={high}
-        step={5}
-        marks={[{ value: 0 }]}
+        step={step}
+        marks={[{ value: unchanged }]}
         styles={{ bar: { display: "none" } }}
         value={value}
         thumbLabel={name(quantity)}
-        label={(shown) => `${shown} %`}
-        onChange={onChange}
-      />
-    </div>
-  );
-}
-
-interface WeightSliderProps {
-  criterion: Criterion;
-  value: number;
-  onChange: (value: number) => void;
-}
-
-/** A weight in per cent; the mark is the identified one. */
-function WeightSlider({ criterion, value, onChange }: WeightSliderProps) {
-  const { name } = useI18n();
-  return (
-    <div>
-      <Text size="sm">
-        {name(criterion.name)}: {value} %
-      </Text>
-      <Slider
-        min={0}
-        max={100}
-        step={1}
-        marks={[{ value: Math.round(100 * criterion.weight) }]}
-        value={value}
-        thumbLabel={name(criterion.name)}
         label={(shown) => `${shown} %`}
         onChange={onChange}
       />
