@@ -20,6 +20,7 @@ import issue3_minimax  # noqa: F401 - registers its measurements
 import issue3_mpcc  # noqa: F401 - registers its measurements
 import issue3_null_space  # noqa: F401 - registers its measurements
 import issue3_ocp  # noqa: F401 - registers its measurements
+import issue4_children  # noqa: F401 - registers its measurements
 import issue4_gait  # noqa: F401 - registers its measurements
 import issue4_peers  # noqa: F401 - registers its measurements
 import issue4_prediction  # noqa: F401 - registers its measurements

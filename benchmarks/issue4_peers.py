@@ -94,6 +94,7 @@ def _moco(stride: MeasuredStride) -> dict[str, float]:
         "names": coordinate_names(subject),
         "times": (stride.times - stride.times[0]).tolist(),
         "reference": (stride.reference[:, : stride.n_q] + offsets).tolist(),
+        "velocities": stride.reference[:, stride.n_q :].tolist(),
         "translation_weight": settings.translation_weight,
         "torque_weight": settings.torque_weight,
         "force_weight": settings.force_weight / (subject.mass * 9.81) ** 2,

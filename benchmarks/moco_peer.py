@@ -12,6 +12,9 @@ import numpy as np
 import opensim
 
 AXES = ("y", "x", "z")
+UNIT_OF_CONTROL = 100.0
+"""Torque [N*m] or force [N] of a control of one: controls are then of the size of angles."""
+VERBOSITY = 0
 UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
@@ -42,9 +45,9 @@ def model_of(problem: dict) -> opensim.Model:
     for k in range(coordinates.getSize()):
         actuator = opensim.CoordinateActuator(coordinates.get(k).getName())
         actuator.setName(f"drive_{coordinates.get(k).getName()}")
-        actuator.setOptimalForce(1.0)
-        actuator.setMinControl(-2000.0)
-        actuator.setMaxControl(2000.0)
+        actuator.setOptimalForce(UNIT_OF_CONTROL)
+        actuator.setMinControl(-2000.0 / UNIT_OF_CONTROL)
+        actuator.setMaxControl(2000.0 / UNIT_OF_CONTROL)
         model.addForce(actuator)
     return model
 
@@ -82,19 +85,29 @@ def study_of(problem: dict, model: opensim.Model) -> opensim.MocoStudy:
     effort = opensim.MocoControlGoal("effort", 1.0)
     for name in problem["names"]:
         weight = problem["force_weight"] if name.startswith("pelvis_") else problem["torque_weight"]
-        effort.setWeightForControl(f"/forceset/drive_{name}", weight)
+        effort.setWeightForControl(f"/forceset/drive_{name}", weight * UNIT_OF_CONTROL**2)
     task.addGoal(effort)
     solver = study.initCasADiSolver()
     solver.set_num_mesh_intervals(len(times) - 1)
     solver.set_multibody_dynamics_mode("implicit")
-    solver.set_optim_convergence_tolerance(1e-4)
-    solver.set_optim_constraint_tolerance(1e-4)
+    # Moco's own defaults.
+    solver.set_optim_convergence_tolerance(1e-3)
+    solver.set_optim_constraint_tolerance(1e-3)
     solver.set_parallel(0)
-    solver.set_verbosity(0)
+    solver.set_verbosity(VERBOSITY)
     guess = solver.createGuess("bounds")
-    guess.insertStatesTrajectory(table, True)
+    guess.insertStatesTrajectory(_states(problem, labels), True)
     solver.setGuess(guess)
     return study
+
+
+def _states(problem: dict, labels: list[str]) -> opensim.TimeSeriesTable:
+    """Values and speeds that the search starts from."""
+    table = opensim.TimeSeriesTable()
+    table.setColumnLabels([*labels, *(label.replace("/value", "/speed") for label in labels)])
+    for t, q, v in zip(problem["times"], problem["reference"], problem["velocities"], strict=True):
+        table.appendRow(t, opensim.RowVector([*q, *v]))
+    return table
 
 
 def main(path: str) -> None:

@@ -89,7 +89,7 @@ class _Search:
 
     def _step(self, jacobian: np.ndarray) -> str | None:
         """Move to better weights; the reason to stop, or None to go on."""
-        solved = True
+        solved, growth = True, 8.0
         while self.damping <= self.method.max_damping:
             theta = self._subproblem(jacobian)
             step = theta - self.state.theta
@@ -104,7 +104,8 @@ class _Search:
                 self._learn(jacobian, trial, step)
                 self.state, self.damping = trial, max(self.damping / 5.0, 1e-9)
                 return "converged: the fit does not improve" if decrease <= self.method.tol_decrease else None
-            self.damping *= 8.0
+            # A damping far too small hardly changes the step: every failure makes for a larger leap.
+            self.damping, growth = self.damping * growth, 4.0 * growth
         return "converged: no smaller step improves the fit" if solved else UNSOLVED
 
     def _subproblem(self, jacobian: np.ndarray) -> np.ndarray:

@@ -140,6 +140,10 @@ class Batch:
     function: ca.Function
     n: int
     _mapped: ca.Function = field(init=False, repr=False)
+    _sizes: tuple[int, ...] = field(init=False, repr=False)
+    """Of the arguments: asking CasADi costs as much as a small function."""
+    _shapes: tuple[tuple[int, ...], ...] = field(init=False, repr=False)
+    """Of the results."""
 
     def __post_init__(self) -> None:
         f = self.function
@@ -147,26 +151,29 @@ class Batch:
         sparse += [name for name in f.name_out() if not f.sparsity_out(name).is_dense()]
         if sparse:
             raise ProblemError(f"{f.name()} must have dense arguments and results (ca.densify), {sparse} are sparse")
+        shapes = [f.size_out(i) for i in range(f.n_out())]
         object.__setattr__(self, "_mapped", self.function.map(self.n))
+        object.__setattr__(self, "_sizes", tuple(f.numel_in(i) for i in range(f.n_in())))
+        object.__setattr__(
+            self, "_shapes", tuple((self.n, rows) if cols == 1 else (self.n, cols, rows) for rows, cols in shapes)
+        )
 
     def __call__(self, *arguments: np.ndarray) -> list[np.ndarray]:
         """Evaluate at points given as arrays of shape (n, size); vectors of shape (size,) are shared by all points.
 
         Dense matrices come back column-major per point: shape (n, columns, rows); vectors as (n, size).
         """
-        f = self.function
-        inputs = [
-            np.ascontiguousarray(np.broadcast_to(a, (self.n, f.numel_in(i))), dtype=np.float64)
-            for i, a in enumerate(arguments)
-        ]
+        inputs = [self._input(a, size) for a, size in zip(arguments, self._sizes, strict=True)]
+        results = [np.empty(shape) for shape in self._shapes]
         buffer, trigger = self._mapped.buffer()
         for i, value in enumerate(inputs):
             buffer.set_arg(i, value.data)  # pyright: ignore[reportCallIssue] (SWIG takes the size from the view)
-        results = [np.empty((self.n, f.numel_out(i))) for i in range(f.n_out())]
         for i, result in enumerate(results):
             buffer.set_res(i, result.data)  # pyright: ignore[reportCallIssue]
         trigger()
-        return [
-            r if f.size2_out(i) == 1 else r.reshape(self.n, f.size2_out(i), f.size1_out(i))
-            for i, r in enumerate(results)
-        ]
+        return results
+
+    def _input(self, values: np.ndarray, size: int) -> np.ndarray:
+        if values.shape != (self.n, size):
+            values = np.broadcast_to(values, (self.n, size))
+        return np.ascontiguousarray(values, dtype=np.float64)

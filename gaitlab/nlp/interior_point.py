@@ -72,8 +72,8 @@ class InteriorPoint:
     delta_first: float = 1e-4
     """First multiple of the identity tried where the Lagrangian is not convex."""
     gauss_newton: bool = False
-    """Where it is not convex use the problem's Gauss-Newton Hessian, if it has one: steps are long far from a solution
-    that follows measurements, and short near one whose constraints are curved."""
+    """Where it is not convex, and as long as the barrier parameter is the first, use the problem's Gauss-Newton
+    Hessian, if it has one: steps are long far from a solution, and short or circling near one."""
 
     def solve(
         self,
@@ -183,7 +183,8 @@ class _Run:
         sigma = x.lam_c / x.s
         matrix = self.assembly.matrix((derivatives.hess, derivatives.jac_g, derivatives.jac_c), sigma)
         delta, factors = self.delta, None
-        if self.method.gauss_newton and derivatives.gauss_newton is not None:
+        far = self.mu >= self.method.mu_initial
+        if self.method.gauss_newton and far and derivatives.gauss_newton is not None:
             factors = self._of_minimum(matrix, delta)
             if factors is None:
                 hess = derivatives.gauss_newton()

@@ -132,6 +132,11 @@ class MechanicalStructure:
         used = self.point_index >= 0
         return used[:, :, None] & used[:, None, :]
 
+    @cached_property
+    def hessian_places(self) -> np.ndarray:
+        """Where those are among all of them, shape (n_kept,)."""
+        return np.flatnonzero(self.hessian_kept)
+
     def _hessian_pattern(self) -> Pattern:
         z, width = self.point_index, 2 * self.layout.n_q
         shape = self.hessian_kept.shape
@@ -257,7 +262,7 @@ class MechanicalProblem:
     def _hessian_entries(self, points: np.ndarray, nodes: np.ndarray) -> np.ndarray:
         """Entries for Hessians in (q, v, a, f) at the Gauss points and in the states at the nodes."""
         local = self.to_local(np.swapaxes(self.to_local(points), 1, 2))
-        return np.concatenate([local[self.shared.hessian_kept], nodes.ravel(), self._diagonal()])
+        return np.concatenate([local.ravel()[self.shared.hessian_places], nodes.ravel(), self._diagonal()])
 
     def _point_derivatives(
         self, z: np.ndarray, lam: np.ndarray

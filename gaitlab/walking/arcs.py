@@ -9,18 +9,28 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import count
+from typing import NamedTuple
 from uuid import uuid4
 
 import numpy as np
 
 from ..multibody.dynamics import ModelLayout
 from ..nlp.interior_point import InteriorPoint
+from ..nlp.sparse_problem import multiply_transposed
 from ..nlp.sparse_solution import SparseSolution, Status, certify
 from ..nlp.workers import Workers
 from ..ocp.mechanical import ContactStage
 from ..transcription.mechanical_layout import Boundary, ContactRow, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
 from .model import walking_functions
+
+
+class Attempt(NamedTuple):
+    """A method and where it starts."""
+
+    method: InteriorPoint
+    start: SparseSolution | np.ndarray
+    """Solution, or variables of shape (n_w,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +55,13 @@ class Arc:
             tracking[-1] = 0.0  # The next arc begins there and has it.
         return replace(whole, reference=whole.reference[nodes], tracking=tracking, given=whole.given[nodes])
 
-    def part(self, x: SparseSolution) -> SparseSolution:
-        """The arc's part of a solution."""
-        return replace(x, w=x.w[self.w], s=x.s[self.c], lam_g=x.lam_g[self.g], lam_c=x.lam_c[self.c])
+    def attempt(self, whole: Attempt) -> Attempt:
+        """The arc's part of an attempt."""
+        x = whole.start
+        if isinstance(x, np.ndarray):
+            return whole._replace(start=x[self.w])
+        own = replace(x, w=x.w[self.w], s=x.s[self.c], lam_g=x.lam_g[self.g], lam_c=x.lam_c[self.c])
+        return whole._replace(start=own)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -59,13 +73,11 @@ class ArcTask:
     model: ModelLayout
     layout: MechanicalLayout
     data: MechanicalData
-    start: SparseSolution | np.ndarray
-    """Solution, or variables of shape (n_w,)."""
-    methods: tuple[InteriorPoint, ...]
+    attempts: tuple[Attempt, ...]
 
     def run(self) -> SparseSolution:
-        """Solution of the first method that solves it, else of the last."""
-        return solve_in_turn(MechanicalProblem(self._structure(), self.data), self.start, self.methods)
+        """Solution of the first attempt that solves it, else of the last."""
+        return solve_in_turn(MechanicalProblem(self._structure(), self.data), self.attempts)
 
     def _structure(self) -> MechanicalStructure:
         if self.key not in _structures:
@@ -75,12 +87,10 @@ class ArcTask:
         return _structures[self.key]
 
 
-def solve_in_turn(
-    problem: MechanicalProblem, start: SparseSolution | np.ndarray, methods: Sequence[InteriorPoint]
-) -> SparseSolution:
-    """Solution of the first method that solves a problem from a start, variables (n_w,), else of the last."""
-    found = methods[0].solve(problem, start)
-    for method in methods[1:]:
+def solve_in_turn(problem: MechanicalProblem, attempts: Sequence[Attempt]) -> SparseSolution:
+    """Solution of the first attempt that solves a problem, else of the last."""
+    found = attempts[0].method.solve(problem, attempts[0].start)
+    for method, start in attempts[1:]:
         if found.status is Status.SOLVED:
             break
         found = method.solve(problem, start)
@@ -92,6 +102,19 @@ COST_NOISE = 1e-6
 MOST_STRUCTURES = 64
 _structures: dict[str, MechanicalStructure] = {}
 """Index tables of the arcs that this process has solved; making them takes longer than an iteration."""
+
+
+class _Unknowns(NamedTuple):
+    """Primal and dual unknowns."""
+
+    w: np.ndarray
+    """Variables, shape (n_w,)."""
+    s: np.ndarray
+    """Slacks, shape (n_c,)."""
+    lam_g: np.ndarray
+    """Multipliers of the equations, shape (n_g,)."""
+    lam_c: np.ndarray
+    """Multipliers of the inequalities, shape (n_c,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,24 +136,41 @@ class Arcs:
     def solve(
         self,
         problem: MechanicalProblem,
-        start: SparseSolution | np.ndarray,
-        methods: Sequence[InteriorPoint],
+        attempts: Sequence[Attempt],
         workers: Workers | None = None,
         done: Callable[[int], None] | None = None,
     ) -> SparseSolution:
-        """Solve a problem of this structure arc by arc, from a point (n_w,) or an earlier solution.
+        """Solve a problem of this structure arc by arc; attempts start from points or solutions of the whole.
 
-        Each arc is given to the methods in turn until one solves it. `done(n_arcs_solved)` may raise to cancel.
+        Each arc is attempted in turn until it is solved. `done(n_arcs_solved)` may raise to cancel.
         Iterations are those of the slowest arc; the status is the first that is not "solved".
         """
+        found = self.solve_each(problem, attempts, workers, done)
+        sizes = problem.structure
+        joint = _Unknowns(np.zeros(sizes.n_w), np.zeros(sizes.n_c), np.zeros(sizes.n_g), np.zeros(sizes.n_c))
+        for arc, x in zip(self.parts, found, strict=True):
+            joint.w[arc.w], joint.s[arc.c], joint.lam_c[arc.c] = x.w, x.s, x.lam_c
+            # The state between two arcs is given once in the whole and once in each of them: multipliers add up.
+            joint.lam_g[arc.g] += x.lam_g
+        status = next((x.status for x in found if x.status is not Status.SOLVED), Status.SOLVED)
+        iterations = max(x.iterations for x in found)
+        return certify(problem, joint, mu=max(x.mu for x in found), iterations=iterations, status=status)
+
+    def solve_each(
+        self,
+        problem: MechanicalProblem,
+        attempts: Sequence[Attempt],
+        workers: Workers | None = None,
+        done: Callable[[int], None] | None = None,
+    ) -> list[SparseSolution]:
+        """The same, the solutions of the arcs in the order of time."""
         tasks = [
             ArcTask(
                 key=f"{self.key}-{i}",
                 model=self.model,
                 layout=arc.structure.layout,
                 data=arc.data(problem.data),
-                start=start[arc.w] if isinstance(start, np.ndarray) else arc.part(start),
-                methods=tuple(methods),
+                attempts=tuple(arc.attempt(whole) for whole in attempts),
             )
             for i, arc in enumerate(self.parts)
         ]
@@ -141,34 +181,35 @@ class Arcs:
                 done(next(finished))
 
         if workers is not None:
-            return self._joined(problem, workers.map(tasks, tell))
+            return workers.map(tasks, tell)
         found: list[SparseSolution] = []
         for task in tasks:
             found.append(task.run())
             tell(len(found), found[-1])
-        return self._joined(problem, found)
+        return found
 
-    def lowest(self, problem: MechanicalProblem, first: SparseSolution, second: SparseSolution) -> SparseSolution:
-        """Of two solutions the better one in each arc; the first where the costs agree but for rounding."""
-        found: list[SparseSolution] = []
-        for arc in self.parts:
-            part = MechanicalProblem(arc.structure, arc.data(problem.data))
-            pair = [replace(arc.part(x), f=part.values(x.w[arc.w]).f) for x in (first, second)]
-            found.append(pair[1] if pair[1].f < pair[0].f - COST_NOISE * abs(pair[0].f) else pair[0])
-        return self._joined(problem, found)
-
-    def _joined(self, problem: MechanicalProblem, found: list[SparseSolution]) -> SparseSolution:
-        sizes = problem.structure
-        w, s = np.zeros(sizes.n_w), np.zeros(sizes.n_c)
-        lam_g, lam_c = np.zeros(sizes.n_g), np.zeros(sizes.n_c)
+    def improved(
+        self, problem: MechanicalProblem, optimum: SparseSolution, found: Sequence[SparseSolution]
+    ) -> SparseSolution:
+        """An optimum with those solutions of arcs, in the order of time, that cost less by more than rounding."""
+        joint = _Unknowns(optimum.w.copy(), optimum.s.copy(), optimum.lam_g.copy(), optimum.lam_c.copy())
         for arc, x in zip(self.parts, found, strict=True):
-            w[arc.w], s[arc.c], lam_c[arc.c] = x.w, x.s, x.lam_c
-            # The state between two arcs is given once in the whole and once in each of them: multipliers add up.
-            lam_g[arc.g] += x.lam_g
-        status = next((x.status for x in found if x.status is not Status.SOLVED), Status.SOLVED)
-        joint = replace(found[0], w=w, s=s, lam_g=lam_g, lam_c=lam_c)
-        iterations = max(x.iterations for x in found)
-        return certify(problem, joint, mu=max(x.mu for x in found), iterations=iterations, status=status)
+            known = MechanicalProblem(arc.structure, arc.data(problem.data)).values(optimum.w[arc.w]).f
+            if x.status is Status.SOLVED and x.f < known - COST_NOISE * abs(known):
+                joint.w[arc.w], joint.s[arc.c] = x.w, x.s
+                joint.lam_g[arc.g], joint.lam_c[arc.c] = x.lam_g, x.lam_c
+        self._set_multipliers_of_given(problem, joint)
+        return certify(problem, joint, mu=optimum.mu, iterations=optimum.iterations, status=optimum.status)
+
+    def _set_multipliers_of_given(self, problem: MechanicalProblem, x: "_Unknowns") -> None:
+        """A given entry is an unknown of its own: its multiplier is what makes the point stationary there."""
+        whole, sparse = self.whole, problem.structure
+        derivatives = problem.derivatives(x.w, x.lam_g, x.lam_c)
+        rows = sparse.n_g - len(whole.fixed_columns) + np.arange(len(whole.fixed_columns))
+        x.lam_g[rows] = 0.0
+        pull = derivatives.grad + multiply_transposed(sparse.jac_g, derivatives.jac_g, x.lam_g, sparse.n_w)
+        pull -= multiply_transposed(sparse.jac_c, derivatives.jac_c, x.lam_c, sparse.n_w)
+        x.lam_g[rows] = -pull[whole.fixed_columns]
 
     def _arc(self, first: int, last: int) -> Arc:
         whole = self.whole.layout

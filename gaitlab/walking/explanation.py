@@ -176,8 +176,7 @@ def _search(
     estimate = method.solve(level, theta, response, _part(report, "weights"))
     for _ in range(SECOND_LOOKS):
         found = WalkOptimum(level, level.problem(estimate.theta), estimate.response.solution)
-        fresh = level.from_tracking(estimate.theta, _arcs(report, "looking for better optima"))
-        better = level.lowest(found, fresh) if _solved(fresh) else found
+        better = level.second_look(found, _arcs(report, "looking for better optima"))
         if better.solution.f >= found.solution.f:
             break
         estimate = method.solve(level, estimate.theta, better, _part(report, "weights"))

@@ -8,7 +8,7 @@ angles. Without the second one, segments with little inertia (a swinging foot, t
 its axis) may turn freely at almost no torque.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -24,7 +24,7 @@ from ..ocp.mechanical import ContactStage
 from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalProblem, MechanicalStructure
-from .arcs import Arcs
+from .arcs import Arcs, Attempt
 from .criteria import ALL, THESIS, positions
 from .given_states import coloured_moves
 from .model import ROOT, walking_functions
@@ -37,8 +37,13 @@ NEARBY = 12
 """Iterations granted to a start that should be close; a good prediction needs two to five."""
 PATIENCE = 30
 """Iterations granted to a start that is tried once and then given up."""
-AFAR, UNKNOWN = 1e-4, 1e-3
+ENOUGH = 60
+"""Iterations granted to arcs that begin again at the tracked walk; most need ten to twenty, few of them more."""
+AFAR, UNKNOWN = 1e-5, 1e-4
 """First barrier parameters from a solution for other weights, and from a walk that is no solution."""
+ROUGH = 1000.0
+"""How roughly problems with a larger barrier parameter are solved on the way: what costs most there is the flat bottom
+of problems that will not be needed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,41 +221,48 @@ class WalkLevel:
         return MechanicalProblem(self.structure, data)
 
     def respond(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
-        """Solve for theta, shape (n_theta,), from a nearby solution."""
-        near = replace(self.settings.solver, max_iter=NEARBY)
-        return self._solve(self.problem(theta), start, (near, self._from(AFAR)))
+        """Solve for theta, shape (n_theta,), from a nearby solution; arcs that are lost from the tracked walk again."""
+        near = Attempt(replace(self.settings.solver, max_iter=NEARBY), start)
+        return self._solve(self.problem(theta), (near, self._afresh))
 
     def respond_nearby(self, theta: np.ndarray, start: SparseSolution) -> WalkOptimum:
         """Solve for theta, shape (n_theta,), from a prediction that is good or not worth pursuing."""
-        return self._solve(self.problem(theta), start, (replace(self.settings.solver, max_iter=PATIENCE),))
+        return self._solve(self.problem(theta), (Attempt(replace(self.settings.solver, max_iter=PATIENCE), start),))
 
     def respond_from_afar(
         self, theta: np.ndarray, start: SparseSolution, done: Callable[[int], None] | None = None
     ) -> WalkOptimum:
         """Solve for theta, shape (n_theta,), from a solution for quite other weights."""
-        return self._solve(self.problem(theta), start, (self._from(AFAR), self._from(UNKNOWN)), done)
+        attempts = [Attempt(self._from(barrier), start) for barrier in (AFAR, UNKNOWN)]
+        return self._solve(self.problem(theta), attempts, done)
 
     def from_tracking(self, theta: np.ndarray, done: Callable[[int], None] | None = None) -> WalkOptimum:
         """Solve for theta, shape (n_theta,), from the tracked walk; `done(n_arcs_solved)` may raise to cancel."""
-        start = self.tracked.solution.w
-        return self._solve(self.problem(theta), start, (self._from(UNKNOWN), self._from(AFAR)), done)
+        attempts = [Attempt(self._from(barrier), self.tracked.solution.w) for barrier in (UNKNOWN, AFAR)]
+        return self._solve(self.problem(theta), attempts, done)
 
-    def lowest(self, first: WalkOptimum, second: WalkOptimum) -> WalkOptimum:
-        """Of two optima for the same weights the better one in each arc."""
-        return WalkOptimum(self, first.problem, self.arcs.lowest(first.problem, first.solution, second.solution))
+    def second_look(self, optimum: WalkOptimum, done: Callable[[int], None] | None = None) -> WalkOptimum:
+        """In each arc the better one of an optimum and what the tracked walk leads to for the same weights.
+
+        What is not found with some patience is not better: the optimum is known already.
+        """
+        problem = optimum.problem
+        fresh = self.arcs.solve_each(problem, (self._afresh,), self.workers, done)
+        return WalkOptimum(self, problem, self.arcs.improved(problem, optimum.solution, fresh))
+
+    @property
+    def _afresh(self) -> Attempt:
+        return Attempt(replace(self._from(UNKNOWN), max_iter=ENOUGH), self.tracked.solution.w)
 
     def _from(self, barrier: float) -> InteriorPoint:
-        # Far from the solution a small barrier parameter would press the iterates against the inequalities.
-        return replace(self.settings.solver, mu_initial=barrier)
+        # Far from the solution a small barrier parameter would press the iterates against the inequalities, and the
+        # exact Hessian is not convex; where it is not, a multiple of the identity makes for small steps.
+        return replace(self.settings.solver, mu_initial=barrier, gauss_newton=True, kappa_error=ROUGH)
 
     def _solve(
-        self,
-        problem: MechanicalProblem,
-        start: SparseSolution | np.ndarray,
-        methods: tuple[InteriorPoint, ...],
-        done: Callable[[int], None] | None = None,
+        self, problem: MechanicalProblem, attempts: Sequence[Attempt], done: Callable[[int], None] | None = None
     ) -> WalkOptimum:
-        return WalkOptimum(self, problem, self.arcs.solve(problem, start, methods, self.workers, done))
+        return WalkOptimum(self, problem, self.arcs.solve(problem, attempts, self.workers, done))
 
     def cost_terms(self, problem: MechanicalProblem, solution: SparseSolution) -> dict[str, float]:
         """Weighted parts of the cost at a solution."""

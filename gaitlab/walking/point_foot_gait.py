@@ -28,7 +28,7 @@ from ..nlp.workers import Workers
 from ..transcription.contact_rank import without_redundant_contacts
 from ..transcription.mechanical_layout import Boundary, MechanicalLayout
 from ..transcription.mechanical_problem import MechanicalData, MechanicalProblem, MechanicalStructure
-from .arcs import ArcTask, solve_in_turn
+from .arcs import ArcTask, Attempt, solve_in_turn
 from .criteria import ALL, THESIS, positions
 from .gait_data import MeasuredGait, PointFootGait
 from .gait_guess import Curves, StandingPoints, smooth_states
@@ -297,20 +297,20 @@ class GaitLevel:
         methods: Sequence[InteriorPoint],
     ) -> dict[int, SparseSolution]:
         """Solve the stages that have a start."""
+        attempts = {k: tuple(Attempt(method, start) for method in methods) for k, start in starts.items()}
         if self.workers is None:
-            return {k: solve_in_turn(problems[k], start, methods) for k, start in starts.items()}
+            return {k: solve_in_turn(problems[k], own) for k, own in attempts.items()}
         tasks = [
             ArcTask(
                 key=f"{self._key}-{k}",
                 model=self.layout,
                 layout=problems[k].shared.layout,
                 data=problems[k].data,
-                start=start,
-                methods=tuple(methods),
+                attempts=own,
             )
-            for k, start in starts.items()
+            for k, own in attempts.items()
         ]
-        return dict(zip(starts, self.workers.map(tasks), strict=True))
+        return dict(zip(attempts, self.workers.map(tasks), strict=True))
 
     def split(self, x: SparseSolution) -> list[SparseSolution]:
         """The stages of a joint solution."""

@@ -8,7 +8,7 @@ from demo_stride import demo_stride
 
 from gaitlab.nlp.sparse_solution import Status
 from gaitlab.nlp.workers import Workers
-from gaitlab.walking.arcs import part_of_stages
+from gaitlab.walking.arcs import Attempt, part_of_stages
 from gaitlab.walking.identification import AFAR, IdentificationSettings, WalkLevel
 from gaitlab.walking.tracking import track
 
@@ -60,16 +60,24 @@ def test_other_processes_find_exactly_the_same(level, optimum):
     np.testing.assert_array_equal(there.solution.lam_g, optimum.solution.lam_g)
 
 
-def test_each_arc_keeps_the_better_of_two_optima(level, optimum):
-    """A worse walk in all arcs but one: only that one is taken over."""
-    arc = level.arcs.parts[1]
+def test_an_optimum_takes_over_the_arcs_that_cost_less(level, optimum):
+    """From an optimum for other weights, which is worse everywhere; one arc's better solution is said to be lost."""
+    problem, arcs = optimum.problem, level.arcs
     worse = level.respond_from_afar(np.array([0.0, 0.0, 0.0, 1.0]), optimum.solution).solution
-    mixed = worse.w.copy()
-    mixed[arc.w] = optimum.solution.w[arc.w]
-    joint = level.arcs.lowest(optimum.problem, replace(worse, w=worse.w), replace(worse, w=mixed))
-    np.testing.assert_allclose(joint.w[arc.w], optimum.solution.w[arc.w], atol=1e-12)
-    last = level.arcs.parts[-1]
-    np.testing.assert_allclose(joint.w[last.w][-50:], worse.w[last.w][-50:], atol=1e-12)
+    found = arcs.solve_each(problem, (Attempt(level.settings.solver, optimum.solution),))
+    found[1] = replace(found[1], status=Status.STALLED)
+    joint = arcs.improved(problem, worse, found)
+    for k, arc in enumerate(arcs.parts):
+        np.testing.assert_allclose(joint.w[arc.w], (worse if k == 1 else optimum.solution).w[arc.w], atol=1e-5)
+    whole = arcs.improved(problem, joint, arcs.solve_each(problem, (Attempt(level.settings.solver, optimum.solution),)))
+    assert whole.is_optimal(1e-6)
+    np.testing.assert_allclose(whole.lam_g, optimum.solution.lam_g, rtol=1e-4, atol=1e-4)
+
+
+def test_an_optimum_is_kept_where_nothing_is_better(level, optimum):
+    again = level.second_look(optimum)
+    np.testing.assert_allclose(again.solution.w, optimum.solution.w, atol=1e-5)
+    np.testing.assert_allclose(again.solution.lam_g, optimum.solution.lam_g, rtol=1e-4, atol=1e-4)
 
 
 def test_parts_of_stages_keep_time_and_contacts(level):
