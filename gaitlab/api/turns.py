@@ -50,7 +50,7 @@ class _Body:
     """Makes answers of what an endpoint returns."""
 
     def __init__(self, writer: TypeAdapter[Any] | None, status: int | None) -> None:
-        self._writer, self._status = writer, HTTPStatus.OK if status is None else status
+        self._writer, self._status = writer, int(HTTPStatus.OK if status is None else status)
 
     def of(self, returned: Any) -> Response:
         if self._writer is None:

@@ -10,7 +10,7 @@ from gaitlab.api.listing import Listing
 from gaitlab.storage.models import Patient, Role
 
 PAGES = {
-    "/api/v1/patients": 3,
+    "/api/v1/patients?limit=500": 3,
     "/api/v1/patients/{patient_id}": 4,
     "/api/v1/patients/{patient_id}/sessions": 4,
     "/api/v1/results?session_id={session_id}": 3,
