@@ -14,6 +14,7 @@ from typing import Any
 import httpx
 import numpy as np
 import psutil
+from light_client import Person
 from registry import Row, measurement
 from web_world import World, world_in_a_process
 from websockets.asyncio.client import connect
@@ -41,26 +42,28 @@ def _pages(case: object) -> tuple[str, ...]:
 
 
 async def _browse(world: World, rate: float, seconds: float) -> tuple[list[float], int]:
-    """Seconds of each answer, and how many were no answers; requests leave at fixed times, whatever comes back."""
-    token = world.as_role(Role.CLINICIAN)
-    pages = _pages(world.case)
-    limits = httpx.Limits(max_connections=USERS, max_keepalive_connections=USERS)
+    """Seconds of each answer since it was due, and how many were no answers.
+
+    Each person wants a page at fixed times, whatever comes back; who still waits asks late, which counts.
+    """
+    address, pages = world.client.base_url, _pages(world.case)
+    arriving = (Person.arrive(address.host, address.port or 80, world.as_role(Role.CLINICIAN)) for _ in range(USERS))
+    people = await asyncio.gather(*arriving)
     took: list[float] = []
     failed = 0
-    async with httpx.AsyncClient(base_url=world.client.base_url, headers=token, limits=limits, timeout=30.0) as client:
 
-        async def one(number: int, due: float) -> None:
-            nonlocal failed
+    async def browse(number: int, person: Person, start: float) -> None:
+        nonlocal failed
+        for turn in range(number, int(rate * seconds), USERS):
+            due = start + turn / rate
             await asyncio.sleep(max(due - time.perf_counter(), 0.0))
-            try:
-                answer = await client.get(pages[number % len(pages)])
-                failed += answer.status_code != 200
-            except httpx.TransportError:
-                failed += 1
+            failed += await person.get(pages[turn % len(pages)]) != 200
             took.append(time.perf_counter() - due)
 
-        start = time.perf_counter() + 0.5
-        await asyncio.gather(*(one(number, start + number / rate) for number in range(int(rate * seconds))))
+    start = time.perf_counter() + 0.5
+    await asyncio.gather(*(browse(number, person, start) for number, person in enumerate(people)))
+    for person in people:
+        person.leave()
     return took, failed
 
 

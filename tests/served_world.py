@@ -9,6 +9,7 @@ import uvicorn
 
 from gaitlab.api.app import create_app
 from gaitlab.cli.web_process import KEEP_ALIVE_SECONDS, spare_what_stays
+from gaitlab.jobs.logs import configure_logs
 from gaitlab.storage.settings import Settings
 
 if __name__ == "__main__":
@@ -18,6 +19,7 @@ if __name__ == "__main__":
     sys.stdout.flush()
     # Nobody reads the log: a full pipe would stop the process.
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    configure_logs("json")
     app = create_app(Settings(data_dir=data_dir, database_url=url, viewers_per_user=20), data_dir / "none")
     spare_what_stays()
     config = uvicorn.Config(app, log_config=None, access_log=False, timeout_keep_alive=KEEP_ALIVE_SECONDS)

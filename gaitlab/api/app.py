@@ -56,6 +56,8 @@ THREADS = 30
 CONNECTIONS, SPARE = THREADS + 2, 8
 """Of the database: one for each thread and kept open, because new ones in a peak would make it worse; spare ones for
 audit lines that outlive an undone transaction."""
+UNTRACED: Any = {"tracing": False, "metrics": False, "logs": False}
+"""No OpenTelemetry, whatever the environment says: its records would hold what users sent."""
 ROUTERS = (
     results.router,
     patients.router,
@@ -91,6 +93,7 @@ def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
         redoc_url=None,
         openapi_url=f"{PREFIX}/openapi.json",
         lifespan=_lifespan,
+        telemetry=UNTRACED,
     )
     app.state.settings, app.state.metrics = settings, REGISTRY
     app.openapi = lambda: document(app, (*ROUTERS, operations.router))
@@ -99,7 +102,8 @@ def create_app(settings: Settings, frontend: Path = FRONTEND) -> FastAPI:
         app.mount("/", Frontend(frontend), name="frontend")
     add_handlers(app)
     # The last one added is the outermost.
-    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=5)
+    # A document of 53 kB at level 1 becomes 13.9 kB in 0.6 ms, at level 5 12.4 kB in 1.5 ms.
+    app.add_middleware(GZipMiddleware, minimum_size=1000, compresslevel=1)
     app.add_middleware(OwnPagesOnly)
     app.add_middleware(SecurityHeaders, tls=settings.secure_cookies, uncached=("/api/", "/health/", "/metrics"))
     app.add_middleware(Observation)

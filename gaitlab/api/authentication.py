@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from typing import Any
 from uuid import UUID
 
-from sqlalchemy import bindparam, func, select, update
+from sqlalchemy import Row, bindparam, func, select, update
 from sqlalchemy.orm import Session
 
 from ..errors import AccessDenied, NotSignedIn, SecondFactorMissing, TooManyAttempts
@@ -27,16 +28,14 @@ KNOWN = {str(permission): permission for permission in Permission}
 WRONG = "login, password or code is wrong"
 NOBODY = "nobody is signed in: sign in, or send a token as 'Authorization: Bearer ...'"
 
-# Every request asks one of these: they are made once.
-_TOKEN = (
-    select(ApiToken, User)
-    .join(User, ApiToken.user_id == User.id)
-    .where(ApiToken.token_hash == bindparam("hash"), ApiToken.revoked_at.is_(None), User.active)
+_Found = Row[*tuple[Any, ...]]
+# Every request asks one of these: they are made once, and give plain rows.
+_U, _T, _W = (kind.__table__.c for kind in (User, ApiToken, WebSession))
+_TOKEN = select(_T.id, _T.scopes, _T.last_used_at, _T.expires_at, _T.user_id, _U.login, _U.role).where(
+    _T.token_hash == bindparam("hash"), _T.revoked_at.is_(None), _T.user_id == _U.id, _U.active
 )
-_SESSION = (
-    select(WebSession, User)
-    .join(User, WebSession.user_id == User.id)
-    .where(WebSession.token_hash == bindparam("hash"), User.active)
+_SESSION = select(_W.id, _W.revoked_at, _W.last_seen_at, _W.expires_at, _W.user_id, _U.login, _U.role).where(
+    _W.token_hash == bindparam("hash"), _W.user_id == _U.id, _U.active
 )
 
 
@@ -71,34 +70,32 @@ def find_caller(db: Session, credentials: Credentials, settings: Settings) -> Ca
 def _by_token(db: Session, text: str) -> Caller:
     found = db.execute(_TOKEN, {"hash": token_hash(text)}).one_or_none()
     moment = datetime.now(UTC)
-    if found is None or (found[0].expires_at is not None and found[0].expires_at <= moment):
+    if found is None or (found.expires_at is not None and found.expires_at <= moment):
         raise NotSignedIn("the token does not exist, was revoked or has expired: make a new one")
-    token, user = found
-    if token.last_used_at is None or moment - token.last_used_at > SEEN_EVERY:
-        db.execute(update(ApiToken).where(ApiToken.id == token.id).values(last_used_at=moment))
-    scopes = {KNOWN[scope] for scope in token.scopes if scope in KNOWN}
-    return _caller(user, PERMISSIONS[user.role] & scopes, token_id=token.id)
+    if found.last_used_at is None or moment - found.last_used_at > SEEN_EVERY:
+        db.execute(update(ApiToken).where(ApiToken.id == found.id).values(last_used_at=moment))
+    scopes = {KNOWN[scope] for scope in found.scopes if scope in KNOWN}
+    return _caller(found, PERMISSIONS[found.role] & scopes, token_id=found.id)
 
 
 def _by_cookie(db: Session, text: str, settings: Settings) -> Caller:
     found = db.execute(_SESSION, {"hash": token_hash(text)}).one_or_none()
     moment = datetime.now(UTC)
-    if found is None or not is_alive(found[0], moment, settings):
+    if found is None or not is_alive(found, moment, settings):
         raise NotSignedIn("the session has ended: sign in again")
-    session, user = found
-    if moment - session.last_seen_at > SEEN_EVERY:
-        db.execute(update(WebSession).where(WebSession.id == session.id).values(last_seen_at=moment))
-    return _caller(user, PERMISSIONS[user.role], web_session_id=session.id)
+    if moment - found.last_seen_at > SEEN_EVERY:
+        db.execute(update(WebSession).where(WebSession.id == found.id).values(last_seen_at=moment))
+    return _caller(found, PERMISSIONS[found.role], web_session_id=found.id)
 
 
-def is_alive(session: WebSession, moment: datetime, settings: Settings) -> bool:
+def is_alive(session: WebSession | _Found, moment: datetime, settings: Settings) -> bool:
     """Whether a browser's session still counts."""
     idle = timedelta(minutes=settings.session_idle_minutes)
     return session.revoked_at is None and session.expires_at > moment and moment - session.last_seen_at < idle
 
 
-def _caller(user: User, permissions: frozenset[Permission], **through: UUID) -> Caller:
-    return Caller(user_id=user.id, login=user.login, role=user.role, permissions=permissions, **through)
+def _caller(found: _Found, permissions: frozenset[Permission], **through: UUID) -> Caller:
+    return Caller(user_id=found.user_id, login=found.login, role=found.role, permissions=permissions, **through)
 
 
 def check_rate(db: Session, login: str, address: str) -> None:

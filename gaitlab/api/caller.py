@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
+from sqlalchemy import Executable, Result
 from sqlalchemy.orm import Session
 
 from ..storage.audit import Actor, Deed, record
@@ -23,6 +24,11 @@ class Caller:
     permissions: frozenset[Permission]
     web_session_id: UUID | None = None
     token_id: UUID | None = None
+
+    @property
+    def sees_all(self) -> bool:
+        """True: the patients of everybody."""
+        return self.role is Role.ADMIN
 
     @property
     def sees_names(self) -> bool:
@@ -60,6 +66,10 @@ class Call:
     def actor(self) -> Actor:
         """Who acts, as the audit log has it."""
         return self.origin.actor(self.caller)
+
+    def find(self, query: Executable, **values: Any) -> Result[*tuple[Any, ...]]:
+        """Rows of a query, whose conditions know the caller as `caller_id` (`visibility.CALLER`)."""
+        return self.db.execute(query, {"caller_id": self.caller.user_id, **values})
 
     def audit(
         self,

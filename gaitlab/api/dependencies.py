@@ -76,18 +76,31 @@ def refuse(request: HTTPConnection, caller: Caller, permission: Permission) -> N
     raise AccessDenied(f"your {through} does not allow this ({permission})")
 
 
-def allowed(permission: Permission) -> Any:
-    """Dependency: the call of somebody who holds `permission`."""
+@dataclass(frozen=True, kw_only=True)
+class Asking:
+    """A request whose caller is looked up where its work is done, in the same thread and transaction."""
 
-    def call(request: Request) -> Generator[Call]:
-        services = services_of(request)
-        # As `transaction`, but not as a dependency of its own, which would be one more turn in another thread.
+    request: Request
+    permission: Permission
+
+    @contextmanager
+    def begin(self) -> Generator[Call]:
+        """The call of somebody who holds the permission, committed at the end of the block."""
+        services = services_of(self.request)
         with services.database.transaction() as db:
-            caller = caller_of(db, request, permission)
-            yield Call(db=db, caller=caller, origin=origin_of(request), services=services)
+            caller = caller_of(db, self.request, self.permission)
+            yield Call(db=db, caller=caller, origin=origin_of(self.request), services=services)
 
-    call.__dict__["permission"] = permission
-    return Depends(call, scope="function")
+
+def allowed(permission: Permission) -> Any:
+    """Dependency: the call of somebody who holds `permission`; `turns.in_one_turn` begins it."""
+
+    # Asynchronous, or the framework would hand it to another thread.
+    async def asking(request: Request) -> Asking:
+        return Asking(request=request, permission=permission)
+
+    asking.__dict__["permission"] = permission
+    return Depends(asking)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,7 +136,7 @@ def allowed_slowly(permission: Permission) -> Any:
     return Depends(asker)
 
 
-def _version(
+async def _version(
     if_match: Annotated[
         str | None, Header(description="Version that was read, as in its ETag.", examples=['"1"'])
     ] = None,

@@ -20,6 +20,8 @@ from .services import Services
 
 CHUNK_LIMIT = 8 << 20
 """Largest chunk of a resumable upload [bytes]."""
+SMALL = 1 << 20
+"""Contents of up to so many bytes are read and verified before their answer begins [bytes]."""
 BINARY = {"schema": {"type": "string", "format": "binary"}}
 
 
@@ -53,6 +55,8 @@ def stream(call: Call, sha256: str, media_type: str, name: str, size: int | None
         "cache-control": "private, no-cache",
         **{key.replace("_", "-"): value for key, value in headers.items()},
     }
+    if size is not None and size <= SMALL:
+        return Response(call.services.files.read(sha256), media_type=media_type, headers=told)
     if size is not None:
         told["content-length"] = str(size)
     return StreamingResponse(call.services.files.open(sha256), media_type=media_type, headers=told)

@@ -10,6 +10,7 @@ from fastapi.routing import APIRoute
 
 from .. import __version__
 from .dependencies import COOKIE
+from .permissions import Permission
 from .schemas.forms import Problem
 
 DESCRIPTION = (
@@ -25,13 +26,12 @@ SAFE = frozenset({"get", "head"})
 REFERENCES = "#/components/schemas/{model}"
 
 
-def permission_of(route: APIRoute) -> str | None:
+def permission_of(route: APIRoute) -> Permission | None:
     """Permission that a route asks for; None: it is open to strangers."""
-    found = [str(each) for each in _permissions(route.dependant)]
-    return found[0] if found else None
+    return next(_permissions(route.dependant), None)
 
 
-def _permissions(dependant: Dependant) -> Iterator[Any]:
+def _permissions(dependant: Dependant) -> Iterator[Permission]:
     for inner in dependant.dependencies:
         if "permission" in getattr(inner.call, "__dict__", {}):
             yield inner.call.__dict__["permission"]  # type: ignore[union-attr]
@@ -62,12 +62,12 @@ def operation_id(route: APIRoute) -> str:
     return first + "".join(word.capitalize() for word in rest)
 
 
-def _complete(operation: dict[str, Any], method: str, permission: str | None) -> None:
+def _complete(operation: dict[str, Any], method: str, permission: Permission | None) -> None:
     """Who may call an operation; and our own document for refused values instead of the framework's."""
     if permission is None:
         operation["security"] = []
     else:
         by_cookie = {"session": []} if method in SAFE else {"session": [], "csrf": []}
         operation["security"] = [{"token": []}, by_cookie]
-        operation["x-permission"] = permission
+        operation["x-permission"] = str(permission)
     operation["summary"] = str(operation.get("description", "")).partition("\n")[0].rstrip(".")

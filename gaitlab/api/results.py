@@ -10,7 +10,7 @@ from pathlib import Path
 from uuid import UUID
 
 import msgspec
-from sqlalchemy import select
+from sqlalchemy import bindparam, select
 
 from ..clinical.comparison import Member, compare
 from ..clinical.document import Document
@@ -29,15 +29,18 @@ EXPORT_SECONDS = 120.0
 SCENE_PROCESS, FORMAT_PROCESS = "gaitlab.viewer.export", "gaitlab.report.export_process"
 
 
+_OF_RESULT = select(ResultFile).where(ResultFile.result_id == bindparam("result_id"))
+_FILES, _FILE = _OF_RESULT.order_by(ResultFile.name), _OF_RESULT.where(ResultFile.name == bindparam("name"))
+
+
 def files_of(call: Call, result_id: UUID) -> list[ResultFile]:
     """Files of a result by name."""
-    query = select(ResultFile).where(ResultFile.result_id == result_id).order_by(ResultFile.name)
-    return list(call.db.scalars(query))
+    return list(call.find(_FILES, result_id=result_id).scalars())
 
 
 def file_of(call: Call, result_id: UUID, name: str) -> ResultFile:
     """One file of a result; raises Absent."""
-    found = call.db.get(ResultFile, (result_id, name))
+    found = call.find(_FILE, result_id=result_id, name=name).scalar_one_or_none()
     if found is None:
         raise Absent("file", name)
     return found

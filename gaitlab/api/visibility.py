@@ -2,13 +2,17 @@
 
 A patient is visible to administrators, to whoever made it, and to whom it is shared with. All routes fetch patient data
 through these functions, so that none can forget the check or the audit line.
+
+To make a statement takes longer than the database takes to answer it. Those that nearly every request asks are
+therefore made once: they name the caller and the object by parameters, whose values `Call.find` gives.
 """
 
 from collections.abc import Sequence
-from typing import TypeVar
+from functools import cache
+from typing import Any, TypeVar
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, and_, exists, or_, select, true
+from sqlalchemy import ColumnElement, Select, Uuid, and_, bindparam, exists, func, or_, select, true
 from sqlalchemy.orm import InstrumentedAttribute, aliased
 
 from ..errors import AccessDenied
@@ -23,7 +27,6 @@ from ..storage.models import (
     Recording,
     ReportVersion,
     Result,
-    Role,
     Subject,
 )
 from .caller import Call
@@ -32,18 +35,27 @@ from .problems import Absent
 Part = Recording | Subject | Attachment | ReportVersion
 P = TypeVar("P", Recording, Subject, Attachment, ReportVersion)
 PatientId = ColumnElement[UUID] | InstrumentedAttribute[UUID]
+CALLER = bindparam("caller_id", type_=Uuid())
+"""Who asks; `Call.find` gives the value."""
+OBJECT = bindparam("object_id", type_=Uuid())
+"""What is asked for; to be given to `Call.find`."""
 _Own, _OwnJob = aliased(Patient), aliased(Job)
 
 
-def visible(call: Call, patient_id: PatientId = Patient.id, write: bool = False) -> ColumnElement[bool]:
+def visible(sees_all: bool, patient_id: PatientId = Patient.id, write: bool = False) -> ColumnElement[bool]:
     """Condition on a query: the patient is visible to the caller, or may be changed by them."""
-    if call.caller.role is Role.ADMIN:
+    if sees_all:
         return true()
-    share = and_(PatientShare.patient_id == patient_id, PatientShare.user_id == call.caller.user_id)
+    share = and_(PatientShare.patient_id == patient_id, PatientShare.user_id == CALLER)
     if write:
         share = and_(share, PatientShare.access == Access.WRITE)
-    mine = and_(_Own.id == patient_id, _Own.created_by == call.caller.user_id)
+    mine = and_(_Own.id == patient_id, _Own.created_by == CALLER)
     return or_(exists().where(share), exists().where(mine))
+
+
+@cache
+def _patient(sees_all: bool) -> Select[Any]:
+    return select(Patient).where(Patient.id == OBJECT, visible(sees_all))
 
 
 def patient(call: Call, patient_id: UUID, action: str, kind: str = "patients", what: object = None) -> Patient:
@@ -53,7 +65,7 @@ def patient(call: Call, patient_id: UUID, action: str, kind: str = "patients", w
         Absent: There is none, or it is hidden from the caller.
         AccessDenied: It is shared for reading only.
     """
-    found = call.db.scalars(select(Patient).where(Patient.id == patient_id, visible(call))).one_or_none()
+    found = call.find(_patient(call.caller.sees_all), object_id=patient_id).scalar_one_or_none()
     if found is None:
         raise Absent("patient", patient_id)
     require_write(call, patient_id, action)
@@ -65,19 +77,27 @@ READING = frozenset({"read", "export", "analyse", "view"})
 """What may be done with a patient that is shared for reading."""
 
 
+@cache
+def _writable(sees_all: bool) -> Select[Any]:
+    return select(exists(Patient.id).where(Patient.id == OBJECT, visible(sees_all, write=True)))
+
+
 def require_write(call: Call, patient_id: UUID, action: str) -> None:
     """Raise AccessDenied when a patient is shared for reading only and the action changes something."""
     if action in READING:
         return
-    query = select(exists(Patient.id).where(Patient.id == patient_id, visible(call, write=True)))
-    if not call.db.scalar(query):
+    if not call.find(_writable(call.caller.sees_all), object_id=patient_id).scalar_one():
         raise AccessDenied(f"patient '{patient_id}' is shared with you for reading only")
+
+
+@cache
+def _gait_session(sees_all: bool) -> Select[Any]:
+    return select(GaitSession).where(GaitSession.id == OBJECT, visible(sees_all, GaitSession.patient_id))
 
 
 def gait_session(call: Call, session_id: UUID, action: str, kind: str = "sessions", what: object = None) -> GaitSession:
     """A visit of a visible patient, and an audit line."""
-    query = select(GaitSession).where(GaitSession.id == session_id, visible(call, GaitSession.patient_id))
-    found = call.db.scalars(query).one_or_none()
+    found = call.find(_gait_session(call.caller.sees_all), object_id=session_id).scalar_one_or_none()
     if found is None:
         raise Absent("session", session_id)
     require_write(call, found.patient_id, action)
@@ -85,14 +105,15 @@ def gait_session(call: Call, session_id: UUID, action: str, kind: str = "session
     return found
 
 
+@cache
+def _part(kind: type[Part], sees_all: bool) -> Select[*tuple[Any, ...]]:
+    query = select(kind, GaitSession.patient_id).join(GaitSession, kind.session_id == GaitSession.id)
+    return query.where(kind.id == OBJECT, visible(sees_all, GaitSession.patient_id))
+
+
 def part(call: Call, kind: type[P], object_id: UUID, action: str) -> P:
     """A recording, subject, attachment or report of a visible patient, and an audit line."""
-    query = (
-        select(kind, GaitSession.patient_id)
-        .join(GaitSession, kind.session_id == GaitSession.id)
-        .where(kind.id == object_id, visible(call, GaitSession.patient_id))
-    )
-    found = call.db.execute(query).one_or_none()
+    found = call.find(_part(kind, call.caller.sees_all), object_id=object_id).one_or_none()
     if found is None:
         raise Absent(kind.__name__.lower().removesuffix("version"), object_id)
     row, patient_id = found
@@ -101,13 +122,13 @@ def part(call: Call, kind: type[P], object_id: UUID, action: str) -> P:
     return row
 
 
-def visible_job(call: Call, job_id: InstrumentedAttribute[UUID] = Job.id) -> ColumnElement[bool]:
+def visible_job(sees_all: bool, job_id: InstrumentedAttribute[UUID] = Job.id) -> ColumnElement[bool]:
     """Condition on a query: all patients of the job are visible; jobs without patients are their maker's."""
-    if call.caller.role is Role.ADMIN:
+    if sees_all:
         return true()
-    hidden = exists(JobPatient.job_id).where(JobPatient.job_id == job_id, ~visible(call, JobPatient.patient_id))
+    hidden = exists(JobPatient.job_id).where(JobPatient.job_id == job_id, ~visible(sees_all, JobPatient.patient_id))
     some = exists(JobPatient.job_id).where(JobPatient.job_id == job_id)
-    mine = exists().where(_OwnJob.id == job_id, _OwnJob.created_by == call.caller.user_id)
+    mine = exists().where(_OwnJob.id == job_id, _OwnJob.created_by == CALLER)
     return and_(~hidden, or_(some, mine))
 
 
@@ -116,34 +137,53 @@ def patients_of(call: Call, job_id: UUID) -> Sequence[UUID]:
     return call.db.scalars(select(JobPatient.patient_id).where(JobPatient.job_id == job_id)).all()
 
 
+def _with_patients(
+    kind: type[Job | Result], job_id: InstrumentedAttribute[UUID], sees_all: bool
+) -> Select[*tuple[Any, ...]]:
+    """A job or a result, and the patients whose data it comes from."""
+    patients = select(func.array_agg(JobPatient.patient_id)).where(JobPatient.job_id == job_id).scalar_subquery()
+    return select(kind, patients).where(kind.id == OBJECT, visible_job(sees_all, job_id))
+
+
+@cache
+def _job(sees_all: bool) -> Select[*tuple[Any, ...]]:
+    return _with_patients(Job, Job.id, sees_all)
+
+
 def job(call: Call, job_id: UUID, action: str) -> Job:
     """A job on visible patients, and an audit line for each of them."""
-    found = call.db.scalars(select(Job).where(Job.id == job_id, visible_job(call))).one_or_none()
+    found = call.find(_job(call.caller.sees_all), object_id=job_id).one_or_none()
     if found is None:
         raise Absent("analysis", job_id)
-    _audit_each(call, job_id, action, ("jobs", job_id))
-    return found
+    _audit_each(call, found[1], action, ("jobs", job_id))
+    return found[0]
+
+
+@cache
+def _result(sees_all: bool) -> Select[*tuple[Any, ...]]:
+    return _with_patients(Result, Result.job_id, sees_all)
 
 
 def result(call: Call, result_id: UUID, action: str, kind: str = "results", what: object = None) -> Result:
     """A result on visible patients, and an audit line for each of them."""
-    query = select(Result).where(Result.id == result_id, visible_job(call, Result.job_id))
-    found = call.db.scalars(query).one_or_none()
+    found = call.find(_result(call.caller.sees_all), object_id=result_id).one_or_none()
     if found is None:
         raise Absent("result", result_id)
-    _audit_each(call, found.job_id, action, (kind, what or result_id))
-    return found
+    _audit_each(call, found[1], action, (kind, what or result_id))
+    return found[0]
 
 
-def _audit_each(call: Call, job_id: UUID, action: str, what: tuple[str, object]) -> None:
-    patients = patients_of(call, job_id)
-    for patient_id in patients:
+def _audit_each(call: Call, patients: Sequence[UUID] | None, action: str, what: tuple[str, object]) -> None:
+    for patient_id in patients or ():
         require_write(call, patient_id, action)
         call.audit(action, what[0], what[1], patient_id)
     if not patients:
         call.audit(action, *what)
 
 
+_PATIENT_OF = select(GaitSession.__table__.c.patient_id).where(GaitSession.__table__.c.id == OBJECT)
+
+
 def patient_of(call: Call, session_id: UUID) -> UUID:
     """The patient of a visit that was found to be visible."""
-    return call.db.get_one(GaitSession, session_id).patient_id
+    return call.find(_PATIENT_OF, object_id=session_id).scalar_one()

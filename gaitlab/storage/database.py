@@ -48,6 +48,8 @@ class Database:
             hide_parameters=True,
             pool_size=connections,
             max_overflow=spare,
+            # The connection that was used last: its server process is warm and has the statements prepared.
+            pool_use_lifo=True,
         )
         event.listen(engine, "checkout", _refuse_closed)
         plain = parts.set(drivername="postgresql").render_as_string(hide_password=False)

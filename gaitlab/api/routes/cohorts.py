@@ -67,7 +67,8 @@ def _answer(row: CohortRow, n_members: int) -> Cohort:
 def _with_members(call: Call, row: CohortRow) -> CohortWithMembers:
     query = select(MemberRow).join(Result, Result.id == MemberRow.result_id).where(MemberRow.cohort_id == row.id)
     count = call.db.scalar(select(func.count()).select_from(query.subquery())) or 0
-    seen = call.db.scalars(query.where(visibility.visible_job(call, Result.job_id)).order_by(MemberRow.result_id))
+    visible = visibility.visible_job(call.caller.sees_all, Result.job_id)
+    seen = call.find(query.where(visible).order_by(MemberRow.result_id)).scalars()
     found = [CohortMember.model_validate(each) for each in seen]
     return CohortWithMembers(**_answer(row, count).model_dump(), members=found)
 

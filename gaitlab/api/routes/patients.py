@@ -1,12 +1,13 @@
 """Patients, who they are, and with whom they are shared."""
 
+from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 from typing import Annotated, Any
 from uuid import UUID
 
 from fastapi import Query, Response
-from sqlalchemy import ColumnElement, Select, case, func, nulls_last, or_, select
+from sqlalchemy import ColumnElement, Select, String, bindparam, case, func, nulls_last, or_, select
 from starlette.background import BackgroundTask
 from starlette.responses import FileResponse
 
@@ -20,7 +21,7 @@ from .. import visibility
 from ..caller import Call
 from ..dependencies import Asker, ExpectedVersion, allowed, allowed_slowly, check_version, tag
 from ..files import content, disposition
-from ..listing import containing, page
+from ..listing import Listing, containing, page
 from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
@@ -49,7 +50,7 @@ Sharer = Annotated[Call, allowed(Permission.SHARES_WRITE)]
 """In the interface of routes, `call` is who asks with what they may reach."""
 
 
-def _with_visits(call: Call) -> tuple[Select[*tuple[Any, ...]], ColumnElement[Any]]:
+def _with_visits(sees_all: bool) -> tuple[Select[*tuple[Any, ...]], ColumnElement[Any]]:
     """Patients with the number and the last day of their visits, and whether the caller may change them."""
     visits = (
         select(
@@ -60,11 +61,11 @@ def _with_visits(call: Call) -> tuple[Select[*tuple[Any, ...]], ColumnElement[An
         .group_by(GaitSession.patient_id)
         .subquery()
     )
-    may_write = case((visibility.visible(call, write=True), "write"), else_="read")
+    may_write = case((visibility.visible(sees_all, write=True), "write"), else_="read")
     query = select(PatientRow, func.coalesce(visits.c.n_sessions, 0), visits.c.last_visit, may_write).outerjoin(
         visits, visits.c.patient_id == PatientRow.id
     )
-    return query.where(visibility.visible(call)), visits.c.last_visit
+    return query.where(visibility.visible(sees_all)), visits.c.last_visit
 
 
 def _answer(call: Call, row: Any) -> Patient:
@@ -84,35 +85,47 @@ def _answer(call: Call, row: Any) -> Patient:
     )
 
 
+@cache
+def _one_patient(sees_all: bool) -> Select[Any]:
+    return _with_visits(sees_all)[0].where(PatientRow.id == visibility.OBJECT)
+
+
 def _one(call: Call, patient_id: UUID) -> Patient:
-    return _answer(call, call.db.execute(_with_visits(call)[0].where(PatientRow.id == patient_id)).one())
+    return _answer(call, call.find(_one_patient(call.caller.sees_all), object_id=patient_id).one())
 
 
-@router.get("")
-def list_patients(call: Reader, which: Annotated[PatientFilter, Query()]) -> Page[Patient]:
-    """Patients that the caller may see."""
-    query, last_visit = _with_visits(call)
-    if which.search:
-        query = query.where(_matches(call, containing(which.search)))
+@cache
+def _listing(sees_all: bool, sees_names: bool, searches: bool, order: str) -> Listing:
+    query, last_visit = _with_visits(sees_all)
+    if searches:
+        query = query.where(_matches(sees_names))
     columns: dict[str, ColumnElement[Any]] = {
         "pseudonym": PatientRow.pseudonym.expression,
         "created_at": PatientRow.created_at.expression,
         "last_visit": last_visit,
     }
-    column = columns[which.order.removeprefix("-")]
-    order = column.desc() if which.order.startswith("-") else column.asc()
-    call.audit("list", "patients", detail={"searched": bool(which.search)})
-    return page(call, query.order_by(nulls_last(order), PatientRow.id), which, lambda row: _answer(call, row))
+    column = columns[order.removeprefix("-")]
+    ordered = column.desc() if order.startswith("-") else column.asc()
+    return Listing(query.order_by(nulls_last(ordered), PatientRow.id))
 
 
-def _matches(call: Call, pattern: str) -> ColumnElement[bool]:
+def _matches(sees_names: bool) -> ColumnElement[bool]:
+    pattern = bindparam("pattern", type_=String())
     own = or_(PatientRow.pseudonym.ilike(pattern), PatientRow.diagnosis.ilike(pattern))
-    if not call.caller.sees_names:
+    if not sees_names:
         return own
     identity = select(PatientIdentity.patient_id).where(
         or_(PatientIdentity.name.ilike(pattern), PatientIdentity.record_number.ilike(pattern))
     )
     return or_(own, PatientRow.id.in_(identity))
+
+
+@router.get("")
+def list_patients(call: Reader, which: Annotated[PatientFilter, Query()]) -> Page[Patient]:
+    """Patients that the caller may see."""
+    rows = _listing(call.caller.sees_all, call.caller.sees_names, bool(which.search), which.order)
+    call.audit("list", "patients", detail={"searched": bool(which.search)})
+    return page(call, rows, which, lambda row: _answer(call, row), pattern=containing(which.search))
 
 
 @router.post("", status_code=HTTPStatus.CREATED)

@@ -1,5 +1,6 @@
 """Results: what they hold, their files, and exports in the formats of others."""
 
+from functools import cache
 from http import HTTPStatus
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -8,7 +9,7 @@ from uuid import UUID
 import msgspec
 from fastapi import Query, Response
 from pydantic import Field
-from sqlalchemy import delete, exists, select
+from sqlalchemy import bindparam, delete, exists, select
 from starlette.background import BackgroundTask
 from starlette.responses import FileResponse
 
@@ -22,7 +23,7 @@ from ..dependencies import Asker, allowed, allowed_slowly
 from ..files import content, disposition, stream
 from ..headers import DOCUMENT as DOCUMENT_POLICY
 from ..headers import SCENE as SCENE_POLICY
-from ..listing import page
+from ..listing import Listing, page
 from ..permissions import Permission
 from ..pseudonyms import mask, masked_names
 from ..results import (
@@ -94,21 +95,29 @@ def _answer(call: Call, row: ResultRow, patient_id: UUID | None) -> Result:
     )
 
 
+@cache
+def _listing(sees_all: bool, filters: frozenset[str]) -> Listing:
+    """Results for which the parameters named by `filters` hold."""
+    query = select(ResultRow, GaitSession.patient_id).outerjoin(GaitSession, GaitSession.id == ResultRow.session_id)
+    query = query.where(visibility.visible_job(sees_all, ResultRow.job_id))
+    if "patient_id" in filters:
+        mine = exists().where(JobPatient.job_id == ResultRow.job_id, JobPatient.patient_id == bindparam("patient_id"))
+        query = query.where(mine)
+    if "session_id" in filters:
+        query = query.where(ResultRow.session_id == bindparam("session_id"))
+    if "kind" in filters:
+        query = query.where(ResultRow.kind == bindparam("kind"))
+    return Listing(query.order_by(ResultRow.created_at.desc(), ResultRow.id))
+
+
 @router.get("")
 def list_results(call: Reader, which: Annotated[ResultFilter, Query()]) -> Page[Result]:
     """Results on visible patients, newest first."""
-    query = select(ResultRow, GaitSession.patient_id).outerjoin(GaitSession, GaitSession.id == ResultRow.session_id)
-    query = query.where(visibility.visible_job(call, ResultRow.job_id))
-    if which.patient_id is not None:
-        mine = exists().where(JobPatient.job_id == ResultRow.job_id, JobPatient.patient_id == which.patient_id)
-        query = query.where(mine)
-    if which.session_id is not None:
-        query = query.where(ResultRow.session_id == which.session_id)
-    if which.kind is not None:
-        query = query.where(ResultRow.kind == which.kind)
     call.audit("list", "results", patient_id=which.patient_id)
-    query = query.order_by(ResultRow.created_at.desc(), ResultRow.id)
-    return page(call, query, which, lambda row: _answer(call, row[0], row[1]))
+    given = {"patient_id": which.patient_id, "session_id": which.session_id, "kind": which.kind}
+    values = {name: value for name, value in given.items() if value is not None}
+    rows = _listing(call.caller.sees_all, frozenset(values))
+    return page(call, rows, which, lambda row: _answer(call, row[0], row[1]), **values)
 
 
 @router.get("/{result_id}")

@@ -14,7 +14,7 @@ from ...storage.models import GaitSession, PatientIdentity
 from .. import visibility
 from ..caller import Call
 from ..dependencies import ExpectedVersion, allowed, check_version, tag
-from ..listing import page
+from ..listing import Listing, page
 from ..permissions import Permission
 from ..repetition import RepetitionKey, once
 from ..routing import api_router
@@ -36,7 +36,7 @@ def _answer(call: Call, row: GaitSession) -> Session:
 @router.get("/sessions")
 def list_sessions(call: Reader, which: Annotated[SessionFilter, Query()]) -> Page[Session]:
     """Visits of all patients that the caller may see, newest first."""
-    query = select(GaitSession).where(visibility.visible(call, GaitSession.patient_id))
+    query = select(GaitSession).where(visibility.visible(call.caller.sees_all, GaitSession.patient_id))
     if which.patient_id is not None:
         query = query.where(GaitSession.patient_id == which.patient_id)
     call.audit("list", "sessions", patient_id=which.patient_id)
@@ -44,13 +44,18 @@ def list_sessions(call: Reader, which: Annotated[SessionFilter, Query()]) -> Pag
     return page(call, query, which, lambda row: _answer(call, row[0]))
 
 
+_OF_PATIENT = Listing(
+    select(GaitSession)
+    .where(GaitSession.patient_id == visibility.OBJECT)
+    .order_by(GaitSession.visited_on, GaitSession.created_at)
+)
+
+
 @router.get("/patients/{patient_id}/sessions")
 def list_patient_sessions(call: Reader, patient_id: UUID, which: Annotated[Paging, Query()]) -> Page[Session]:
     """Visits of one patient, oldest first, as on a time line."""
     visibility.patient(call, patient_id, "read", "sessions")
-    query = select(GaitSession).where(GaitSession.patient_id == patient_id)
-    query = query.order_by(GaitSession.visited_on, GaitSession.created_at)
-    return page(call, query, which, lambda row: _answer(call, row[0]))
+    return page(call, _OF_PATIENT, which, lambda row: _answer(call, row[0]), object_id=patient_id)
 
 
 @router.post("/patients/{patient_id}/sessions", status_code=HTTPStatus.CREATED)
