@@ -1,5 +1,5 @@
 import { useState } from "react";
-import { Group, Pagination, Table, TextInput } from "@mantine/core";
+import { Group, Pagination, Table, Text, TextInput } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { client, unwrap } from "../api/client";
@@ -27,6 +27,7 @@ export function AuditLog() {
         <TextInput label={t("object")} value={kind} onChange={(event) => setKind(event.currentTarget.value)} />
       </Group>
       <ErrorNote error={lines.error} />
+      {lines.data?.items.length === 0 && <Text c="dimmed">{t("nothingLogged")}</Text>}
       <Table>
         <Table.Thead>
           <Table.Tr>

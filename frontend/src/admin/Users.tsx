@@ -48,7 +48,7 @@ export function Users() {
         </Alert>
       )}
       <ErrorNote error={users.error ?? change.error ?? newPassword.error} />
-      <Table>
+      <Table mt="md">
         <Table.Thead>
           <Table.Tr>
             <Table.Th>{t("login")}</Table.Th>

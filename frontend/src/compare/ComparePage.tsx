@@ -1,9 +1,11 @@
 /** Before and after, or any number of patients, side by side. */
 import { useCallback, useMemo } from "react";
 import { Group, Stack, Text, Title } from "@mantine/core";
+import { useQueries } from "@tanstack/react-query";
 import { useLocation, useSearch } from "wouter";
 import { ErrorNote } from "../app/ErrorNote";
 import { useI18n } from "../i18n/I18n";
+import { visitQuery } from "../visit/visitQuery";
 import { Choice } from "./Choice";
 import { Cohorts } from "./Cohorts";
 import { FEW, letterOf, Overlays } from "./Overlays";
@@ -18,29 +20,42 @@ export default function ComparePage() {
   const { named, error } = useAnalysed();
   const choose = (ids: readonly string[]) => navigate(`/compare?results=${ids.join(",")}`, { replace: true });
   const labelOf = useCallback(
-    ({ result, pseudonym }: Named) => {
+    ({ result, pseudonym }: Named, visit?: string) => {
       const trials = result.summary.trials as string[] | undefined;
       const kind = result.kind === "predict" ? t("prediction") : (trials?.join(", ") ?? "");
-      return [pseudonym, date(result.created_at), kind].filter(Boolean).join(" · ");
+      return [pseudonym, visit ?? date(result.created_at), kind].filter(Boolean).join(" · ");
     },
     [t, date],
   );
-  const labels = useMemo(() => new Map(named?.map((each) => [each.result.id, labelOf(each)])), [named, labelOf]);
   return (
     <Stack>
       <Title order={1}>{t("compare")}</Title>
       <ErrorNote error={error} />
       {named && <Choice named={named} labelOf={labelOf} chosen={chosen} choose={choose} />}
       <Cohorts chosen={chosen} choose={choose} />
-      {chosen.length > 1 && <Compared ids={chosen} labels={labels} />}
+      {chosen.length < 2 && <Text c="dimmed">{t("chooseTwo")}</Text>}
+      {chosen.length > 1 && named && <Compared ids={chosen} named={named} labelOf={labelOf} />}
     </Stack>
   );
 }
 
-function Compared({ ids, labels }: { ids: readonly string[]; labels: ReadonlyMap<string, string> }) {
+interface ComparedProps {
+  ids: readonly string[];
+  named: readonly Named[];
+  /** Name of a result, by its visit where that is known, else by the day of its analysis. */
+  labelOf: (named: Named, visit?: string) => string;
+}
+
+function Compared({ ids, named: all, labelOf }: ComparedProps) {
   const few = ids.length <= FEW;
+  const known = useMemo(() => new Map(all.map((each) => [each.result.id, each])), [all]);
+  const visits = useVisitsOf(few ? ids.flatMap((id) => known.get(id)?.result.session_id ?? []) : []);
   const named = new Map(
-    ids.map((id, index) => [id, few ? `${letterOf(index)} · ${labels.get(id) ?? ""}` : (labels.get(id) ?? id)]),
+    ids.map((id, index) => {
+      const found = known.get(id);
+      const label = found ? labelOf(found, visits.get(found.result.session_id ?? "")) : id;
+      return [id, few ? `${letterOf(index)} · ${label}` : label];
+    }),
   );
   return (
     <>
@@ -56,5 +71,18 @@ function Compared({ ids, labels }: { ids: readonly string[]; labels: ReadonlyMap
       {few && <Overlays ids={ids} />}
       <Tables ids={ids} labels={named} />
     </>
+  );
+}
+
+/** When visits were and whether before or after treatment, in words, by their ids. */
+function useVisitsOf(ids: readonly string[]): ReadonlyMap<string, string> {
+  const { t, date } = useI18n();
+  const visits = useQueries({ queries: [...new Set(ids)].map(visitQuery) });
+  return new Map(
+    visits.flatMap(({ data }) => {
+      if (!data) return [];
+      const stage = data.stage === "none" ? "" : ` (${t(data.stage)})`;
+      return [[data.id, date(data.visited_on) + stage]];
+    }),
   );
 }

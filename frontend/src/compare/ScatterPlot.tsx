@@ -14,7 +14,7 @@ interface Props {
 }
 
 export function ScatterPlot({ wide, labels, nameOf }: Props) {
-  const { t, number } = useI18n();
+  const { t, number, plain } = useI18n();
   const colours = useColours();
   const keys = wide.quantities.map((each) => each.key);
   const [across, setAcross] = useState(keys.find((key) => key.startsWith("speed")) ?? keys[0] ?? "");
@@ -27,7 +27,12 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
     return known.sort((a, b) => a.x - b.x);
   }, [wide, labels, across, up]);
   const options = useMemo<Omit<uPlot.Options, "width" | "height">>(() => {
-    const axis: uPlot.Axis = { stroke: colours.text, grid: { stroke: colours.grid }, font: "11px system-ui" };
+    const axis: uPlot.Axis = {
+      stroke: colours.text,
+      grid: { stroke: colours.grid, width: 1 },
+      font: "11px system-ui",
+      values: (_, ticks) => ticks.map(plain),
+    };
     const title = (key: string) => {
       const quantity = wide.quantities.find((each) => each.key === key);
       return quantity ? nameOf(quantity) : key;
@@ -61,7 +66,7 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
         ],
       },
     };
-  }, [wide, colours, across, up, points, nameOf]);
+  }, [wide, colours, across, up, points, nameOf, plain]);
   const data = useMemo<uPlot.AlignedData>(() => [points.map(({ x }) => x), points.map(({ y }) => y)], [points]);
   const choices = wide.quantities.map((each) => ({ value: each.key, label: nameOf(each) }));
   return (

@@ -1,5 +1,6 @@
 import { List, Stack, Table, Text, Title } from "@mantine/core";
 import { useI18n } from "../i18n/I18n";
+import { digitsOf } from "./digits";
 import { SIDES, type ResultDocument } from "./document";
 
 interface Row {
@@ -18,10 +19,11 @@ export function NumbersTab({ document }: { document: ResultDocument }) {
   const walk = quantities.map((quantity): Row => {
     const [left, right] = SIDES.map((side) => {
       const told = spatiotemporal[side];
-      return spread(told?.mean[quantity], told?.sd[quantity], 2);
+      return spread(told?.mean[quantity], told?.sd[quantity], digitsOf(quantity));
     });
     const norm = reference?.spatiotemporal?.[quantity];
-    return { name: name(quantity), left: left ?? "–", right: right ?? "–", norm: spread(norm?.mean, norm?.sd, 2) };
+    const usual = spread(norm?.mean, norm?.sd, digitsOf(quantity));
+    return { name: name(quantity), left: left ?? "–", right: right ?? "–", norm: usual };
   });
   const variables = Object.keys(scores?.left?.gvs ?? scores?.right?.gvs ?? {});
   const profile = variables.map((variable): Row => {
@@ -71,7 +73,7 @@ function useSpread() {
 function Sides({ rows }: { rows: readonly Row[] }) {
   const { t } = useI18n();
   return (
-    <Table striped>
+    <Table striped layout="fixed">
       <Table.Thead>
         <Table.Tr>
           <Table.Th>{t("quantity")}</Table.Th>
