@@ -1,9 +1,12 @@
 import { describe, expect, it } from "vitest";
+import { auditQuery, EVERYTHING } from "../src/admin/auditQuery";
 import { problemOf } from "../src/api/client";
 import { compareCells } from "../src/compare/compareCells";
 import { meets } from "../src/compare/filters";
 import { csvCell, widen } from "../src/compare/wide";
+import { en } from "../src/i18n/en";
 import { fill } from "../src/i18n/fill";
+import { nameIn } from "../src/i18n/names";
 import { strideIn } from "../src/i18n/stride";
 import { advance, NOTHING, secondsLeft } from "../src/jobs/progress";
 import { percentAt, strideOf, stridesIn, timeAt, trialIn } from "../src/result/cycle";
@@ -82,6 +85,17 @@ describe("texts", () => {
     expect(strideIn("joint angles")).toBeNull();
   });
 
+  it("puts names of sides, muscles and limits together", () => {
+    const names = ["left_hip_flexor_limit", "right_knee_extensor_peak_nm_per_kg", "torque_weight", "gvs_knee_flexion"];
+    expect(names.map((each) => nameIn(en, each))).toEqual([
+      "Strength of the hip flexors, left",
+      "Largest torque of the knee extensors [N·m/kg], right",
+      "Weight: Joint torque",
+      "GVS Knee flexion",
+    ]);
+    expect(nameIn(en, "left_unheard_of")).toBe("Left unheard of");
+  });
+
   it("says what the server said", () => {
     expect(problemOf({ detail: "no such patient" }, 404).message).toBe("no such patient");
     expect(problemOf(undefined, 502).message).toBe("HTTP 502");
@@ -109,6 +123,12 @@ describe("visit", () => {
   it("takes recordings and videos", () => {
     expect(["a.C3D", "b.mp4", "c.txt"].map(isWanted)).toEqual([true, true, false]);
   });
+});
+
+it("asks the audit log for whole days and for what was filled in", () => {
+  expect(auditQuery({ ...EVERYTHING, action: "login" })).toEqual({ action: "login" });
+  const { after, before } = auditQuery({ ...EVERYTHING, from: "2026-11-20", to: "2026-11-20" });
+  expect(Date.parse(before ?? "") - Date.parse(after ?? "")).toBe(24 * 3600 * 1000);
 });
 
 it("writes changes as the command line does", () => {

@@ -60,7 +60,8 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
             for (const { label, x, y } of points.length <= 30 ? points : []) {
               const [left, top] = [chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)];
               chart.ctx.textAlign = left < middle ? "left" : "right";
-              chart.ctx.fillText(label, left + (left < middle ? 10 : -10), top - 6);
+              // Its letter or its patient: whole names would lie over each other.
+              chart.ctx.fillText(label.split(" · ")[0] ?? label, left + (left < middle ? 10 : -10), top - 6);
             }
           },
         ],

@@ -60,7 +60,7 @@ export function SortableTable({ name, columns, rows, shown }: Props) {
           onChange={(event) => setTyped(event.currentTarget.value)}
         />
         <Button variant="default" onClick={save}>
-          csv
+          {t("saveCsv")}
         </Button>
       </Group>
       <ScrollArea.Autosize mah={520} viewportProps={{ tabIndex: 0, role: "region", "aria-label": name }}>

@@ -30,7 +30,7 @@ export function WeightsPlot({ quantities, wide, labels }: Props) {
       <ScrollArea.Autosize mah={420} viewportProps={{ tabIndex: 0, role: "region", "aria-label": t("weights") }}>
         {shown.map(([id, values]) => (
           <Group key={id} wrap="nowrap" mb={4}>
-            <Text size="sm" w="35%" truncate>
+            <Text size="sm" w="35%">
               {labels.get(id)}
             </Text>
             <div

@@ -3,6 +3,7 @@ import { createContext, useContext, useEffect, useMemo, useState, type ReactNode
 import { de } from "./de";
 import { en } from "./en";
 import { fill } from "./fill";
+import { nameIn } from "./names";
 import { strideIn } from "./stride";
 
 export type Language = "en" | "de";
@@ -77,13 +78,6 @@ function make(language: Language, setLanguage: (language: Language) => void): I1
       return [before && name(before), at].filter(Boolean).join(", ");
     },
   };
-}
-
-function nameIn(words: Record<Key, string>, apiName: string): string {
-  if (apiName.startsWith("gvs_")) return `GVS ${words[`n_${apiName.slice(4)}` as Key] ?? apiName}`;
-  const known = words[`n_${apiName.replace(/[ -]/g, "_")}` as Key] as string | undefined;
-  const plain = apiName.replaceAll("_", " ");
-  return known ?? plain.charAt(0).toUpperCase() + plain.slice(1);
 }
 
 export function I18nProvider({ children }: { children: ReactNode }) {

@@ -145,7 +145,7 @@ function panelSource(document: ResultDocument, cycles: Cycles | null, t: Sided):
     if (known) return known;
     const lines = SIDES.flatMap((side): Line[] => {
       const single = cycles?.[name]?.[side];
-      if (single) return single.map((mean) => ({ side, mean, faint: true, label: t(side) }));
+      if (single) return single.map((mean, index) => ({ side, mean, faint: true, label: `${t(side)} ${index + 1}` }));
       const curve = curves[name]?.[side];
       return curve ? [{ side, mean: curve.mean, sd: curve.sd, label: t(side) }] : [];
     });

@@ -97,14 +97,14 @@ function Sides({ rows }: { rows: readonly Row[] }) {
 }
 
 function Predicted({ prediction }: { prediction: NonNullable<ResultDocument["prediction"]> }) {
-  const { t, name, number } = useI18n();
+  const { t, name, number, unit } = useI18n();
   return (
     <>
       <Title order={2}>{t("predictedChanges")}</Title>
       <Text>
         {Object.entries(prediction.request)
-          .map(([quantity, value]) => `${name(quantity)} ${number(value, 2)} ${prediction.units[quantity] ?? ""}`)
-          .join(", ")}
+          .map(([quantity, value]) => [name(quantity), number(value, 2), unit(prediction.units[quantity] ?? "")].join(" "))
+          .join(" · ")}
         {prediction.message && ` · ${prediction.message}`}
       </Text>
       <Table>
@@ -119,8 +119,8 @@ function Predicted({ prediction }: { prediction: NonNullable<ResultDocument["pre
           {Object.entries(prediction.identified).map(([quantity, value]) => (
             <Table.Tr key={quantity}>
               <Table.Th fw={400}>{name(quantity)}</Table.Th>
-              <Table.Td>{number(value, 3)}</Table.Td>
-              <Table.Td>{number(prediction.predicted[quantity], 3)}</Table.Td>
+              <Table.Td>{number(value, digitsOf(quantity))}</Table.Td>
+              <Table.Td>{number(prediction.predicted[quantity], digitsOf(quantity))}</Table.Td>
             </Table.Tr>
           ))}
         </Table.Tbody>

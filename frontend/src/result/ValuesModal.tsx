@@ -22,9 +22,12 @@ function rowsOf(data: PanelData): Row[] {
 
 /** The same for programs: English titles and decimal points whatever the page's language. */
 function csvOf(data: PanelData, rows: readonly Row[]): string {
-  const header = ["percent", ...data.lines.flatMap(({ side, sd }) => (sd ? [`${side} mean`, `${side} sd`] : [side]))];
+  const header = data.lines.flatMap(({ side, sd }, index) => {
+    const cycle = data.lines.slice(0, index + 1).filter((each) => each.side === side).length;
+    return sd ? [`${side} mean`, `${side} sd`] : [`${side} ${cycle}`];
+  });
   const lines = rows.map(([percent, ...values]) => [percent, ...values.map((value) => value?.toFixed(4) ?? "")]);
-  return [header, ...lines].map((line) => line.join(",")).join("\n");
+  return [["percent", ...header], ...lines].map((line) => line.join(",")).join("\n");
 }
 
 export function ValuesModal({ layout, data, onClose }: Props) {
@@ -52,7 +55,7 @@ export function ValuesModal({ layout, data, onClose }: Props) {
         download={`${layout.name}.csv`}
         href={`data:text/csv;charset=utf-8,${encodeURIComponent(csvOf(data, rows))}`}
       >
-        csv
+        {t("saveCsv")}
       </Button>
       <ScrollArea h={420} viewportProps={{ tabIndex: 0, "aria-label": name(layout.name), role: "region" }}>
         <Table stickyHeader>

@@ -46,7 +46,7 @@ export function RecordingCard({ recording, corrected, onCorrect }: Props) {
           <Text fw={600}>{recording.name}</Text>
           {found ? <Badges found={found} /> : <Loader size="xs" role="status" aria-label={t("reading")} />}
         </Group>
-        <Group gap="xs">
+        <Group gap="xs" ml="auto">
           <NativeSelect
             size="xs"
             aria-label={t("kindOf", { name: recording.name })}
