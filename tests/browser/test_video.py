@@ -66,6 +66,8 @@ def page(chromium, clinic, case):
         page.get_by_role("link", name="frontal.webm").wait_for()
         page.goto(f"/results/{case.result_id}")
         page.get_by_role("button", name="Video beside the curves").click()
+        # The visit holds a file of zeros that is called a video.
+        page.get_by_role("alert").filter(has_text="cannot play").wait_for()
         page.get_by_label("Video", exact=True).and_(page.locator("select")).select_option(label="frontal.webm")
         until(lambda: player(page).evaluate("video => video.readyState >= 2"), page)
         yield page

@@ -41,7 +41,8 @@ export function Users() {
       <Invite onInvited={setLink} />
       {link && (
         <Alert my="sm" title={t("oneTimeLink")}>
-          <Code>{link}</Code>
+          {/* As it is sent to somebody, it needs the server's name, which the server need not know. */}
+          <Code>{new URL(link, window.location.href).href}</Code>
         </Alert>
       )}
       <ErrorNote error={users.error ?? change.error ?? newPassword.error} />
