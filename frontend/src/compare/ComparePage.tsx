@@ -27,6 +27,8 @@ export default function ComparePage() {
     },
     [t, date],
   );
+  // Once for all, as there may be thousands.
+  const labels = useMemo(() => new Map(named?.map((each) => [each.result.id, labelOf(each)])), [named, labelOf]);
   return (
     <Stack>
       <Title order={1}>{t("compare")}</Title>
@@ -34,34 +36,41 @@ export default function ComparePage() {
       {named && <Choice named={named} labelOf={labelOf} chosen={chosen} choose={choose} />}
       <Cohorts chosen={chosen} choose={choose} />
       {chosen.length < 2 && <Text c="dimmed">{t("chooseTwo")}</Text>}
-      {chosen.length > 1 && named && <Compared ids={chosen} named={named} labelOf={labelOf} />}
+      {chosen.length > 1 && named && <Compared ids={chosen} named={named} labels={labels} labelOf={labelOf} />}
     </Stack>
   );
 }
 
+/** Names of a few results: a letter, and their visit rather than the day of their analysis. */
+function useFewLabels(ids: readonly string[], named: readonly Named[], labelOf: LabelOf): ReadonlyMap<string, string> {
+  const found = ids.map((id) => named.find(({ result }) => result.id === id));
+  const visits = useVisitsOf(found.flatMap((each) => each?.result.session_id ?? []));
+  return new Map(
+    found.map((each, index) => {
+      const visit = visits.get(each?.result.session_id ?? "");
+      return [ids[index] ?? "", `${letterOf(index)} · ${each ? labelOf(each, visit) : ""}`];
+    }),
+  );
+}
+
+/** Name of a result, by its visit where that is known, else by the day of its analysis. */
+type LabelOf = (named: Named, visit?: string) => string;
+
 interface ComparedProps {
   ids: readonly string[];
   named: readonly Named[];
-  /** Name of a result, by its visit where that is known, else by the day of its analysis. */
-  labelOf: (named: Named, visit?: string) => string;
+  labels: ReadonlyMap<string, string>;
+  labelOf: LabelOf;
 }
 
-function Compared({ ids, named: all, labelOf }: ComparedProps) {
+function Compared({ ids, named, labels, labelOf }: ComparedProps) {
   const few = ids.length <= FEW;
-  const known = useMemo(() => new Map(all.map((each) => [each.result.id, each])), [all]);
-  const visits = useVisitsOf(few ? ids.flatMap((id) => known.get(id)?.result.session_id ?? []) : []);
-  const named = new Map(
-    ids.map((id, index) => {
-      const found = known.get(id);
-      const label = found ? labelOf(found, visits.get(found.result.session_id ?? "")) : id;
-      return [id, few ? `${letterOf(index)} · ${label}` : label];
-    }),
-  );
+  const lettered = useFewLabels(few ? ids : [], named, labelOf);
   return (
     <>
       {few && (
         <Group gap="lg">
-          {[...named.values()].map((label) => (
+          {[...lettered.values()].map((label) => (
             <Text key={label} fw={600} size="sm">
               {label}
             </Text>
@@ -69,7 +78,7 @@ function Compared({ ids, named: all, labelOf }: ComparedProps) {
         </Group>
       )}
       {few && <Overlays ids={ids} />}
-      <Tables ids={ids} labels={named} />
+      <Tables ids={ids} labels={few ? lettered : labels} />
     </>
   );
 }
