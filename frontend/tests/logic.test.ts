@@ -1,9 +1,13 @@
 import { describe, expect, it } from "vitest";
+import { auditQuery, EVERYTHING } from "../src/admin/auditQuery";
 import { problemOf } from "../src/api/client";
 import { compareCells } from "../src/compare/compareCells";
 import { meets } from "../src/compare/filters";
 import { csvCell, widen } from "../src/compare/wide";
+import { en } from "../src/i18n/en";
 import { fill } from "../src/i18n/fill";
+import { nameIn } from "../src/i18n/names";
+import { strideIn } from "../src/i18n/stride";
 import { advance, NOTHING, secondsLeft } from "../src/jobs/progress";
 import { percentAt, strideOf, stridesIn, timeAt, trialIn } from "../src/result/cycle";
 import { readNpz } from "../src/result/npz";
@@ -11,8 +15,9 @@ import { stacked } from "../src/result/ShareChart";
 import { parseTable, resample } from "../src/result/table";
 import { sharesOf } from "../src/result/walk";
 import { changesOf, weightChangesOf } from "../src/result/changes";
-import { byTrial, eventsIn } from "../src/visit/events";
+import { byTrial, countsIn, eventsIn } from "../src/visit/events";
 import { foundIn } from "../src/visit/inspection";
+import { axisOf, movedByKey, snapped, stancesOf, ticksOf, withTime } from "../src/visit/timeAxis";
 import { isWanted } from "../src/visit/upload";
 
 const stride = { trial: "walk", side: "left", start_s: 1, end_s: 2, outlier: [], representative: false } as const;
@@ -74,6 +79,23 @@ describe("texts", () => {
     expect(fill("{count} markers of {whom}", { count: 3 })).toBe("3 markers of {whom}");
   });
 
+  it("finds the stride that the server names", () => {
+    expect(strideIn("weights, left stride at 1.56 s")).toEqual({ before: "weights", side: "left", start_s: 1.56 });
+    expect(strideIn("right 0.5 s")).toEqual({ before: "", side: "right", start_s: 0.5 });
+    expect(strideIn("joint angles")).toBeNull();
+  });
+
+  it("puts names of sides, muscles and limits together", () => {
+    const names = ["left_hip_flexor_limit", "right_knee_extensor_peak_nm_per_kg", "torque_weight", "gvs_knee_flexion"];
+    expect(names.map((each) => nameIn(en, each))).toEqual([
+      "Strength of the hip flexors, left",
+      "Largest torque of the knee extensors [N·m/kg], right",
+      "Weight: Joint torque",
+      "GVS Knee flexion",
+    ]);
+    expect(nameIn(en, "left_unheard_of")).toBe("Left unheard of");
+  });
+
   it("says what the server said", () => {
     expect(problemOf({ detail: "no such patient" }, 404).message).toBe("no such patient");
     expect(problemOf(undefined, 502).message).toBe("HTTP 502");
@@ -87,12 +109,26 @@ describe("visit", () => {
     expect(found?.markers).toEqual(["LASI", "RASI"]);
     expect(found?.parameters).toEqual({ mass: 31.5, left_leg_length: 0.71 });
     expect(found?.warnings).toEqual([]);
+    expect(found?.timing).toBeNull();
     expect(foundIn({ inspection: null })).toBeNull();
+  });
+
+  it("knows when frames are and what the plates measured", () => {
+    const rows = [["frames", "361 at 100 Hz, 3.61 s, first 0"], ["force plates", "1: up to 569 N at 1000 Hz"]];
+    const found = foundIn({ inspection: { rows } });
+    expect(found?.timing).toEqual({ frames: 361, rate: 100 });
+    expect(found?.plates).toEqual([{ number: 1, newton: 569, rate: 1000 }]);
   });
 
   it("takes recordings and videos", () => {
     expect(["a.C3D", "b.mp4", "c.txt"].map(isWanted)).toEqual([true, true, false]);
   });
+});
+
+it("asks the audit log for whole days and for what was filled in", () => {
+  expect(auditQuery({ ...EVERYTHING, action: "login" })).toEqual({ action: "login" });
+  const { after, before } = auditQuery({ ...EVERYTHING, from: "2026-11-20", to: "2026-11-20" });
+  expect(Date.parse(before ?? "") - Date.parse(after ?? "")).toBe(24 * 3600 * 1000);
 });
 
 it("writes changes as the command line does", () => {
@@ -159,6 +195,50 @@ describe("events", () => {
     const recordings = [{ id: "1", name: "walk1.c3d" }, { id: "2", name: "walk2.c3d" }];
     const [late, early] = [0.9, 0.2].map((time_s) => ({ side: "left", kind: "foot_off", time_s }) as const);
     expect(byTrial({ "1": [late!, early!] }, recordings)).toEqual({ walk1: [early, late] });
+  });
+});
+
+it("counts events of each kind", () => {
+  expect(countsIn("3 left foot off, 2 right foot strike")).toEqual([
+    { count: 3, side: "left", kind: "foot_off" },
+    { count: 2, side: "right", kind: "foot_strike" },
+  ]);
+  expect(countsIn("none")).toEqual([]);
+});
+
+describe("time line", () => {
+  const event = (side: "left" | "right", kind: "foot_strike" | "foot_off", time_s: number) => ({ side, kind, time_s });
+  const events = [event("left", "foot_off", 0.2), event("left", "foot_strike", 0.6), event("right", "foot_off", 1.4)];
+  const axis = axisOf({ frames: 201, rate: 100 }, events);
+
+  it("goes from the first frame to the last, or as far as the events need", () => {
+    expect(axis.end).toBe(2);
+    expect(axisOf(null, events).end).toBe(2);
+    expect(axisOf(null, []).end).toBe(1);
+  });
+
+  it("snaps to frames of the recording", () => {
+    expect([0.6149, -1, 9].map((time) => snapped(time, axis))).toEqual([0.61, 0, 2]);
+    expect(snapped(0.5, axisOf({ frames: 121, rate: 120 }, []))).toBe(0.5);
+  });
+
+  it("moves by a frame, by ten and to the ends", () => {
+    const keys = ["ArrowLeft", "ArrowRight", "PageUp", "Home", "End", "Enter"];
+    expect(keys.map((key) => movedByKey(0.6, key, axis))).toEqual([0.59, 0.61, 0.7, 0, 2, null]);
+  });
+
+  it("moves one event and leaves the others in their order", () => {
+    expect(withTime(events, 1, 1.9).map(({ time_s }) => time_s)).toEqual([0.2, 1.9, 1.4]);
+  });
+
+  it("shows when a foot is on the floor", () => {
+    expect(stancesOf(events, "left", axis)).toEqual([[0, 0.2], [0.6, 2]]);
+    expect(stancesOf(events, "right", axis)).toEqual([[0, 1.4]]);
+  });
+
+  it("has few round ticks", () => {
+    expect(ticksOf(axis)).toEqual([0, 0.2, 0.4, 0.6, 0.8, 1, 1.2, 1.4, 1.6, 1.8, 2]);
+    expect(ticksOf({ end: 0.3, frame: 0.01 })).toEqual([0, 0.1, 0.2, 0.3]);
   });
 });
 

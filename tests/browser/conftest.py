@@ -11,16 +11,26 @@ from uuid import UUID
 import pytest
 from browser_driver import chromium_path, launched, new_context
 from browser_driver import sign_in as type_and_enter
+from sqlalchemy import update
 from web_world import PASSWORD, running_world
 
 from gaitlab.api.pages import FRONTEND
 from gaitlab.jobs.imported import import_result
 from gaitlab.jobs.request import JobRequest
-from gaitlab.storage.models import JobKind, Role
+from gaitlab.storage.models import JobKind, Recording, Role
 
 WAIT_MS = 40_000
 WEIGHTED = Path(__file__).parent / "weights_of_the_demo.zip"
 """What `gaitlab demo` wrote for walk1, without the pages: some minutes of computation."""
+
+
+FOUND = [
+    ["frames", "201 at 100 Hz, 2.01 s, first 1"],
+    ["markers", "LASI, RASI"],
+    ["event times", "left foot strike 0.5000, left foot off 1.1000"],
+    ["events", "1 left foot off, 1 left foot strike"],
+]
+"""Rows as the job "inspect" writes them."""
 
 
 @pytest.fixture(scope="session")
@@ -110,6 +120,14 @@ def make_visit(page, pseudonym):
 def sign_in(page, login):
     """As anybody of the clinic."""
     type_and_enter(page, login, PASSWORD)
+
+
+def inspected_visit(world):
+    """A visit whose recording has been looked into: two seconds with two events."""
+    case = world.make_case()
+    with world.services.database.transaction() as db:
+        db.execute(update(Recording).where(Recording.id == case.recording_id).values(inspection={"rows": FOUND}))
+    return case
 
 
 def add_weighted_result(world, folder):

@@ -5,7 +5,7 @@ from axe_playwright_python.sync_playwright import Axe
 
 from gaitlab.storage.models import Role
 
-from .conftest import opened_page, sign_in
+from .conftest import inspected_visit, opened_page, sign_in
 
 pytestmark = pytest.mark.slow
 RULES = ("wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice")
@@ -74,6 +74,13 @@ def test_sign_in_has_no_faults(stranger):
 def test_pages_have_no_faults(page, address, name):
     page.goto(address(PAGES[name]))
     page.get_by_role("heading", level=1).wait_for()
+    assert faults(page) == ""
+
+
+def test_a_recording_with_its_time_line_has_no_faults(page, clinic):
+    page.goto(f"/visits/{inspected_visit(clinic).session_id}")
+    page.get_by_role("button", name="What was read").click()
+    page.get_by_role("slider", name="Foot off").wait_for()
     assert faults(page) == ""
 
 

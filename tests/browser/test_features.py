@@ -5,27 +5,17 @@ import json
 
 import pyotp
 import pytest
-from sqlalchemy import update
 
-from gaitlab.storage.models import Recording, Role
+from gaitlab.storage.models import Role
 
-from .conftest import opened_page, sign_in
+from .conftest import inspected_visit, opened_page, sign_in
 
 pytestmark = pytest.mark.slow
-ROWS = [
-    ["markers", "LASI, RASI"],
-    ["event times", "left foot strike 0.5000, left foot off 1.1000"],
-    ["events", "1 left foot off, 1 left foot strike"],
-]
 
 
 @pytest.fixture
 def visit(clinic):
-    """A visit whose recording has been looked into."""
-    case = clinic.make_case()
-    with clinic.services.database.transaction() as db:
-        db.execute(update(Recording).where(Recording.id == case.recording_id).values(inspection={"rows": ROWS}))
-    return case
+    return inspected_visit(clinic)
 
 
 def posted(page, path, press):
@@ -47,6 +37,43 @@ def test_corrected_events_go_with_the_next_analysis(page, visit):
             {"side": "left", "kind": "foot_off", "time_s": 1.1},
         ]
     }
+
+
+@pytest.fixture
+def foot_off(page, visit):
+    """The mark of the second event on the time line, which is at 1.1 s."""
+    page.goto(f"/visits/{visit.session_id}")
+    page.get_by_role("button", name="What was read").click()
+    return page.get_by_role("slider", name="Foot off left, 2")
+
+
+def test_an_event_is_dragged_on_the_time_line(page, foot_off):
+    foot_off.scroll_into_view_if_needed()
+    page.wait_for_timeout(500)  # The details unfold.
+    strike, off = (page.get_by_role("slider").nth(index).bounding_box() for index in (0, 1))
+    second = (off["x"] - strike["x"]) / (1.1 - 0.5)  # [px]
+    x, y = off["x"] + off["width"] / 2, off["y"] + off["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 0.1 * second, y)
+    page.mouse.move(x + 0.254 * second, y)
+    page.mouse.up()
+    page.mouse.move(x, y)
+    # Snapped to a frame, in the table and in what is sent.
+    assert page.get_by_label("Time [s] 2").input_value() == "1.350"
+    run = page.get_by_role("button", name="Run", exact=True)
+    sent = posted(page, "/analyses", run.click)["settings"]["events"]["Jane_walk"]
+    assert [event["time_s"] for event in sent] == [0.5, 1.35]
+
+
+def test_an_event_is_moved_by_keys_and_put_back(page, foot_off):
+    foot_off.focus()
+    for key in ("ArrowRight", "PageDown", "ArrowLeft", "ArrowLeft"):
+        page.keyboard.press(key)
+    assert foot_off.get_attribute("aria-valuetext") == "0.990 s, frame 99"
+    assert page.get_by_label("Time [s] 2").input_value() == "0.990"
+    page.get_by_role("button", name="As in the file").click()
+    assert page.get_by_label("Time [s] 2").input_value() == "1.100"
 
 
 def test_an_examination_is_written_down(page, visit, clinic):

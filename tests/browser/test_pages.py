@@ -106,3 +106,18 @@ def test_an_administrator_sees_users_and_audit_log(stranger, clinic):
     stranger.get_by_text(clinic.people[Role.CLINICIAN].login).first.wait_for()
     stranger.get_by_role("tab", name="Audit log").click()
     stranger.get_by_text("login").first.wait_for()
+
+
+def test_the_audit_log_tells_what_was_done_with_one_patient(stranger, clinic):
+    sign_in(stranger, clinic.people[Role.CLINICIAN].login)
+    stranger.goto(f"/patients/{clinic.case.patient_id}")
+    stranger.get_by_role("heading", level=1).wait_for()
+    stranger.get_by_role("button", name="Sign out").click()
+    sign_in(stranger, clinic.people[Role.ADMIN].login)
+    stranger.goto("/admin")
+    stranger.get_by_role("tab", name="Audit log").click()
+    stranger.get_by_label("Account").select_option(label=clinic.people[Role.CLINICIAN].login)
+    stranger.get_by_role("button", name=f"Only patient {clinic.case.patient_id[:8]}").first.click()
+    stranger.get_by_role("button", name="All patients").wait_for()
+    stranger.get_by_label("From").fill("2200-01-01")
+    stranger.get_by_text("Nothing is logged that fits.").wait_for()

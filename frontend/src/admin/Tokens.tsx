@@ -1,5 +1,5 @@
 import { useState } from "react";
-import { Alert, Button, Code, Group, Table, TextInput } from "@mantine/core";
+import { Alert, Button, Code, Group, Table, Text, TextInput } from "@mantine/core";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useAccount } from "../account/Account";
 import { client, unwrap } from "../api/client";
@@ -55,7 +55,17 @@ export function Tokens() {
         </Alert>
       )}
       <ErrorNote error={tokens.error ?? create.error ?? revoke.error} />
-      <Table>
+      {tokens.data?.length === 0 && <Text c="dimmed">{t("noTokens")}</Text>}
+      <Table mt="md">
+        <Table.Thead>
+          <Table.Tr>
+            <Table.Th>{t("tokenName")}</Table.Th>
+            <Table.Th>{t("expires")}</Table.Th>
+            <Table.Th>
+              <span className="unseen">{t("revoke")}</span>
+            </Table.Th>
+          </Table.Tr>
+        </Table.Thead>
         <Table.Tbody>
           {tokens.data?.map((token) => (
             <Table.Tr key={token.id}>
@@ -67,6 +77,7 @@ export function Tokens() {
                 ) : (
                   <Button size="xs" variant="default" onClick={() => revoke.mutate(token.id)}>
                     {t("revoke")}
+                    <span className="unseen"> {token.name}</span>
                   </Button>
                 )}
               </Table.Td>

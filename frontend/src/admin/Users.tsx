@@ -5,11 +5,11 @@ import { client, ifMatch, unwrap, type Schemas } from "../api/client";
 import { ErrorNote } from "../app/ErrorNote";
 import { submitting } from "../app/submitting";
 import { useI18n, type Key } from "../i18n/I18n";
+import { USERS, usersQuery } from "./usersQuery";
 
 type User = Schemas["User"];
 type Role = Schemas["Role"];
 const ROLES: Role[] = ["admin", "clinician", "researcher", "viewer"];
-const KEY = ["users"];
 
 function useRoleChoices() {
   const { t } = useI18n();
@@ -21,10 +21,7 @@ export function Users() {
   const roles = useRoleChoices();
   const queries = useQueryClient();
   const [link, setLink] = useState("");
-  const users = useQuery({
-    queryKey: KEY,
-    queryFn: () => unwrap(client.GET("/api/v1/users", { params: { query: { limit: 200 } } })),
-  });
+  const users = useQuery(usersQuery());
   const change = useMutation({
     mutationFn: ({ user, body }: { user: User; body: Schemas["UserChange"] }) =>
       unwrap(
@@ -33,7 +30,7 @@ export function Users() {
           body,
         }),
       ),
-    onSettled: () => queries.invalidateQueries({ queryKey: KEY }),
+    onSettled: () => queries.invalidateQueries({ queryKey: USERS }),
   });
   const newPassword = useMutation({
     mutationFn: (id: string) => unwrap(client.POST("/api/v1/users/{user_id}/link", { params: { path: { user_id: id } } })),
@@ -44,11 +41,12 @@ export function Users() {
       <Invite onInvited={setLink} />
       {link && (
         <Alert my="sm" title={t("oneTimeLink")}>
-          <Code>{link}</Code>
+          {/* As it is sent to somebody, it needs the server's name, which the server need not know. */}
+          <Code>{new URL(link, window.location.href).href}</Code>
         </Alert>
       )}
       <ErrorNote error={users.error ?? change.error ?? newPassword.error} />
-      <Table>
+      <Table mt="md">
         <Table.Thead>
           <Table.Tr>
             <Table.Th>{t("login")}</Table.Th>
@@ -103,7 +101,7 @@ function Invite({ onInvited }: { onInvited: (url: string) => void }) {
     onSuccess: (told) => {
       onInvited(told.link.url);
       setLogin("");
-      return queries.invalidateQueries({ queryKey: KEY });
+      return queries.invalidateQueries({ queryKey: USERS });
     },
   });
   return (

@@ -1,4 +1,5 @@
-import { useMemo, type ReactNode } from "react";
+import { useEffect, useMemo, useState, type ReactNode } from "react";
+import { flushSync } from "react-dom";
 import { Badge, createTheme, MantineProvider, mergeThemeOverrides, Modal, NumberInput } from "@mantine/core";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import { Problem } from "../api/client";
@@ -43,15 +44,29 @@ export function App() {
   );
 }
 
+/** True while the page is printed: paper is white whatever the screen is. */
+function usePrinting(): boolean {
+  const [printing, setPrinting] = useState(false);
+  useEffect(() => {
+    const media = window.matchMedia("print");
+    // At once, as the browser takes the page as it stands when this returns.
+    const follow = () => flushSync(() => setPrinting(media.matches));
+    media.addEventListener("change", follow);
+    return () => media.removeEventListener("change", follow);
+  }, []);
+  return printing;
+}
+
 /** The theme with the language's way to write numbers. */
 function Themed({ children }: { children: ReactNode }) {
   const { language } = useI18n();
+  const printing = usePrinting();
   const themed = useMemo(() => {
     const defaultProps = { decimalSeparator: language === "de" ? "," : ".", allowedDecimalSeparators: [",", "."] };
     return mergeThemeOverrides(theme, { components: { NumberInput: NumberInput.extend({ defaultProps }) } });
   }, [language]);
   return (
-    <MantineProvider theme={themed} defaultColorScheme="auto">
+    <MantineProvider theme={themed} defaultColorScheme="auto" {...(printing ? { forceColorScheme: "light" } : {})}>
       {children}
     </MantineProvider>
   );

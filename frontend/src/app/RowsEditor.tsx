@@ -11,6 +11,8 @@ export interface Column {
   choices?: readonly { value: string; label: string }[];
   /** Step of a number; without, the cell is a text. */
   step?: number;
+  /** Decimals that are always shown. */
+  digits?: number;
 }
 
 interface Props {
@@ -64,7 +66,13 @@ export function RowsEditor({ label, columns, rows, blank, onChange }: Props) {
           </Table.Tbody>
         </Table>
       </ScrollArea>
-      <Button size="xs" variant="default" mt={4} onClick={() => onChange([...rows, blank])}>
+      <Button
+        size="xs"
+        variant="default"
+        mt={4}
+        style={{ alignSelf: "start" }}
+        onClick={() => onChange([...rows, blank])}
+      >
         {t("addRow", { what: label })}
       </Button>
     </>
@@ -97,6 +105,7 @@ function Cell({ column, label, value, onChange }: CellProps) {
         aria-label={label}
         value={value ?? ""}
         step={column.step}
+        {...(column.digits === undefined ? {} : { decimalScale: column.digits, fixedDecimalScale: true })}
         onChange={(number) => onChange(number === "" ? null : Number(number))}
       />
     );

@@ -13,6 +13,8 @@ export interface Colours {
   grid: string;
   band: string;
   cursor: string;
+  /** One after the other for the criteria of the weights. */
+  criteria: readonly string[];
 }
 
 const SIDES: Record<"light" | "dark", Record<Palette, { left: string; right: string }>> = {
@@ -26,6 +28,10 @@ const SIDES: Record<"light" | "dark", Record<Palette, { left: string; right: str
     green: { left: "#ff8a80", right: "#7fd492" },
     safe: { left: "#ffa94d", right: "#b5cdf0" },
   },
+};
+const CRITERIA = {
+  light: ["#1b7f79", "#d08a1c", "#7a5195", "#7d8f2b", "#8c564b", "#5a7d9a", "#b5739d", "#8a8a8a"],
+  dark: ["#3fb3ab", "#e0a13a", "#b58ad0", "#a9bd4a", "#c98d80", "#86aecd", "#d79bc2", "#b0b0b0"],
 };
 const PAGE = {
   light: { text: "#3d4752", grid: "#e3e7eb", band: "#7f8a9640", cursor: "#111" },
@@ -41,7 +47,10 @@ export function usePalette(): [Palette, (palette: Palette) => void] {
 export function useColours(): Colours {
   const scheme = useComputedColorScheme("light");
   const [palette] = usePalette();
-  return useMemo(() => ({ ...PAGE[scheme], ...SIDES[scheme][palette] }), [scheme, palette]);
+  return useMemo(() => ({ ...PAGE[scheme], ...SIDES[scheme][palette], criteria: CRITERIA[scheme] }), [scheme, palette]);
 }
 
-export const CRITERIA = ["#1b7f79", "#d08a1c", "#7a5195", "#7d8f2b", "#8c564b", "#5a7d9a", "#b5739d", "#8a8a8a"];
+/** Colour of a criterion by its place; after the last the first comes again. */
+export function criterionColour({ criteria }: Colours, index: number): string {
+  return criteria[index % criteria.length] ?? "gray";
+}

@@ -14,7 +14,7 @@ interface Props {
 }
 
 export function ScatterPlot({ wide, labels, nameOf }: Props) {
-  const { t, number } = useI18n();
+  const { t, number, plain } = useI18n();
   const colours = useColours();
   const keys = wide.quantities.map((each) => each.key);
   const [across, setAcross] = useState(keys.find((key) => key.startsWith("speed")) ?? keys[0] ?? "");
@@ -27,7 +27,12 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
     return known.sort((a, b) => a.x - b.x);
   }, [wide, labels, across, up]);
   const options = useMemo<Omit<uPlot.Options, "width" | "height">>(() => {
-    const axis: uPlot.Axis = { stroke: colours.text, grid: { stroke: colours.grid }, font: "11px system-ui" };
+    const axis: uPlot.Axis = {
+      stroke: colours.text,
+      grid: { stroke: colours.grid, width: 1 },
+      font: "11px system-ui",
+      values: (_, ticks) => ticks.map(plain),
+    };
     const title = (key: string) => {
       const quantity = wide.quantities.find((each) => each.key === key);
       return quantity ? nameOf(quantity) : key;
@@ -55,13 +60,14 @@ export function ScatterPlot({ wide, labels, nameOf }: Props) {
             for (const { label, x, y } of points.length <= 30 ? points : []) {
               const [left, top] = [chart.valToPos(x, "x", true), chart.valToPos(y, "y", true)];
               chart.ctx.textAlign = left < middle ? "left" : "right";
-              chart.ctx.fillText(label, left + (left < middle ? 10 : -10), top - 6);
+              // Its letter or its patient: whole names would lie over each other.
+              chart.ctx.fillText(label.split(" · ")[0] ?? label, left + (left < middle ? 10 : -10), top - 6);
             }
           },
         ],
       },
     };
-  }, [wide, colours, across, up, points, nameOf]);
+  }, [wide, colours, across, up, points, nameOf, plain]);
   const data = useMemo<uPlot.AlignedData>(() => [points.map(({ x }) => x), points.map(({ y }) => y)], [points]);
   const choices = wide.quantities.map((each) => ({ value: each.key, label: nameOf(each) }));
   return (

@@ -9,6 +9,8 @@ import { csvCell } from "./wide";
 export interface Column {
   key: string;
   label: string;
+  /** Decimals of its numbers. */
+  digits?: number;
 }
 
 interface Props {
@@ -58,7 +60,7 @@ export function SortableTable({ name, columns, rows, shown }: Props) {
           onChange={(event) => setTyped(event.currentTarget.value)}
         />
         <Button variant="default" onClick={save}>
-          csv
+          {t("saveCsv")}
         </Button>
       </Group>
       <ScrollArea.Autosize mah={520} viewportProps={{ tabIndex: 0, role: "region", "aria-label": name }}>
@@ -85,7 +87,7 @@ export function SortableTable({ name, columns, rows, shown }: Props) {
           </Table.Thead>
           <Table.Tbody>
             {sorted.slice(0, length).map((row) => (
-              <Line key={String(row[0])} row={row} shown={shown} />
+              <Line key={String(row[0])} row={row} shown={shown} columns={columns} />
             ))}
           </Table.Tbody>
         </Table>
@@ -100,13 +102,13 @@ export function SortableTable({ name, columns, rows, shown }: Props) {
 }
 
 /** Plain cells: a thousand components of a library would take longer than their text. */
-const Line = memo(function Line({ row, shown }: { row: readonly Cell[]; shown: readonly number[] }) {
+const Line = memo(function Line({ row, shown, columns }: Pick<Props, "shown" | "columns"> & { row: readonly Cell[] }) {
   const { number } = useI18n();
   return (
     <tr>
       {shown.map((index) => {
         const cell = row[index] ?? null;
-        return <td key={index}>{typeof cell === "number" ? number(cell, 2) : String(cell ?? "–")}</td>;
+        return <td key={index}>{typeof cell === "number" ? number(cell, columns[index]?.digits ?? 2) : String(cell ?? "–")}</td>;
       })}
     </tr>
   );

@@ -3,6 +3,7 @@ import { useCallback, useEffect, useMemo, useState, useTransition, type ReactNod
 import { NativeSelect, Text, Title } from "@mantine/core";
 import { useI18n, type Key } from "../i18n/I18n";
 import { ErrorNote } from "../app/ErrorNote";
+import { digitsOf } from "../result/digits";
 import { ScatterPlot } from "./ScatterPlot";
 import { SortableTable } from "./SortableTable";
 import { useWide } from "./useWide";
@@ -31,7 +32,11 @@ export function Tables({ ids, labels }: { ids: readonly string[]; labels: Readon
   const columns = useMemo(
     () => [
       { key: "result", label: t("result") },
-      ...(wide?.quantities ?? []).map((each) => ({ key: each.key, label: nameOf(each) })),
+      ...(wide?.quantities ?? []).map((each) => ({
+        key: each.key,
+        label: nameOf(each),
+        digits: digitsOf(each.name),
+      })),
     ],
     [wide, nameOf, t],
   );

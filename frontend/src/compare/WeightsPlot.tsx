@@ -1,6 +1,6 @@
 /** Weights of several results: a stacked bar each. */
 import { Group, ScrollArea, Stack, Text } from "@mantine/core";
-import { CRITERIA } from "../app/colours";
+import { criterionColour, useColours } from "../app/colours";
 import { useI18n } from "../i18n/I18n";
 import type { Quantity, Wide } from "./wide";
 
@@ -15,7 +15,8 @@ interface Props {
 
 export function WeightsPlot({ quantities, wide, labels }: Props) {
   const { t, name, number } = useI18n();
-  const colour = (index: number) => CRITERIA[index % CRITERIA.length];
+  const colours = useColours();
+  const colour = (index: number) => criterionColour(colours, index);
   const shown = [...wide.values].filter(([, values]) => quantities.some(({ key }) => values.has(key))).slice(0, MOST);
   return (
     <Stack gap="xs" data-testid="weights-plot">
@@ -29,7 +30,7 @@ export function WeightsPlot({ quantities, wide, labels }: Props) {
       <ScrollArea.Autosize mah={420} viewportProps={{ tabIndex: 0, role: "region", "aria-label": t("weights") }}>
         {shown.map(([id, values]) => (
           <Group key={id} wrap="nowrap" mb={4}>
-            <Text size="sm" w={280} truncate>
+            <Text size="sm" w="35%">
               {labels.get(id)}
             </Text>
             <div

@@ -3,6 +3,8 @@ import { createContext, useContext, useEffect, useMemo, useState, type ReactNode
 import { de } from "./de";
 import { en } from "./en";
 import { fill } from "./fill";
+import { nameIn } from "./names";
+import { strideIn } from "./stride";
 
 export type Language = "en" | "de";
 export type Key = keyof typeof en;
@@ -13,10 +15,17 @@ interface I18n {
   setLanguage: (language: Language) => void;
   t: Translate;
   number: (value: number | null | undefined, digits?: number) => string;
+  /** A small number by its power of ten, such as 3.2e-4. */
+  small: (value: number | null | undefined) => string;
+  /** Any number with as many digits as it needs. */
+  plain: (value: number) => string;
+  unit: (apiUnit: string) => string;
   date: (iso: string) => string;
   moment: (iso: string) => string;
   /** Words for a name of the API such as "hip_flexion"; the name itself, in words, where there are none. */
   name: (apiName: string) => string;
+  /** The same for a stage of a job or a stride, which the server names in words: "weights, left stride at 1.56 s". */
+  told: (words: string) => string;
 }
 
 const STORED = "gaitlab-language";
@@ -37,24 +46,36 @@ function make(language: Language, setLanguage: (language: Language) => void): I1
   const numbersWith = (digits: number) => {
     const known = numbers.get(digits);
     if (known) return known;
-    const made = new Intl.NumberFormat(locale, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+    const made = new Intl.NumberFormat(locale, {
+      minimumFractionDigits: digits,
+      maximumFractionDigits: digits,
+      signDisplay: "negative",
+    });
     numbers.set(digits, made);
     return made;
   };
+  const plain = new Intl.NumberFormat(locale, { maximumSignificantDigits: 6, signDisplay: "negative" });
   const dates = new Intl.DateTimeFormat(locale, { day: "2-digit", month: "short", year: "numeric" });
   const moments = new Intl.DateTimeFormat(locale, { dateStyle: "medium", timeStyle: "medium" });
+  const t: Translate = (key, values) => fill((values?.count === 1 && words[`${key}_one` as Key]) || words[key], values);
+  const number: I18n["number"] = (value, digits = 1) => (value == null ? "–" : numbersWith(digits).format(value));
+  const name = (apiName: string) => nameIn(words, apiName);
   return {
     language,
     setLanguage,
-    t: (key, values) => fill(words[key], values),
-    number: (value, digits = 1) => (value == null ? "–" : numbersWith(digits).format(value)),
+    t,
+    number,
+    small: (value) => value?.toExponential(1).replace(".", language === "de" ? "," : ".") ?? "–",
+    plain: (value) => plain.format(value),
+    unit: (apiUnit) => words[`unit_${apiUnit}` as Key] ?? apiUnit,
     date: (iso) => dates.format(new Date(iso)),
     moment: (iso) => moments.format(new Date(iso)),
-    name: (apiName) => {
-      if (apiName.startsWith("gvs_")) return `GVS ${words[`n_${apiName.slice(4)}` as Key] ?? apiName}`;
-      const known = words[`n_${apiName}` as Key] as string | undefined;
-      const plain = apiName.replaceAll("_", " ");
-      return known ?? plain.charAt(0).toUpperCase() + plain.slice(1);
+    name,
+    told: (text) => {
+      const stride = strideIn(text);
+      const before = (stride?.before ?? text).replace(/^only (.*)$/, (_, criterion: string) => t("only", { name: name(criterion) }));
+      const at = stride && t("strideAt", { side: name(stride.side).toLowerCase(), start: number(stride.start_s, 2) });
+      return [before && name(before), at].filter(Boolean).join(", ");
     },
   };
 }

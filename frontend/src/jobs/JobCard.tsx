@@ -1,4 +1,4 @@
-import { Alert, Badge, Button, Code, Group, NativeSelect, Paper, Progress, Text } from "@mantine/core";
+import { Alert, Anchor, Badge, Button, Code, Group, NativeSelect, Paper, Progress, Text } from "@mantine/core";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { Link } from "wouter";
 import { useAccount } from "../account/Account";
@@ -17,9 +17,16 @@ const COLOURS: Record<Job["status"], string> = {
   cancelled: "gray",
 };
 
-export function JobCard({ job: given }: { job: Job }) {
-  const { t, name, moment } = useI18n();
+interface Props {
+  job: Job;
+  /** Whether the card stands on another page than its visit's. */
+  elsewhere?: boolean;
+}
+
+export function JobCard({ job: given, elsewhere = false }: Props) {
+  const { t, told, moment } = useI18n();
   const { job, history } = useJob(given);
+  const walks = job.inputs.filter((each) => each.role === "walk").map((each) => each.name);
   return (
     <Paper withBorder p="md" data-testid="job">
       <Group justify="space-between">
@@ -29,13 +36,18 @@ export function JobCard({ job: given }: { job: Job }) {
           </Badge>
           <Text fw={600}>{t(`kind_${job.kind}` as Key)}</Text>
           <Text c="dimmed" size="sm">
-            {moment(job.created_at)}
+            {[moment(job.created_at), ...walks].join(" · ")}
           </Text>
+          {elsewhere && job.session_id && (
+            <Anchor component={Link} size="sm" href={`/visits/${job.session_id}`}>
+              {t("visit")}
+            </Anchor>
+          )}
         </Group>
         <Actions job={job} />
       </Group>
       {job.status === "queued" && <Text c="dimmed">{t("waitsInQueue")}</Text>}
-      {job.status === "running" && <Live history={history} title={name(history.told.stage || "starting")} />}
+      {job.status === "running" && <Live history={history} title={told(history.told.stage || "starting")} />}
       {job.error && (
         <Alert color="red" mt="sm" title={t("whatHappened")}>
           {job.error}
@@ -47,13 +59,13 @@ export function JobCard({ job: given }: { job: Job }) {
 }
 
 function Live({ history, title }: { history: History; title: string }) {
-  const { t, number } = useI18n();
+  const { t, number, small } = useI18n();
   const { told } = history;
   const left = secondsLeft(told);
   const facts = [
     told.trial,
     told.iteration != null && t("iteration", { count: told.iteration }),
-    told.residual != null && t("residual", { value: told.residual.toExponential(1) }),
+    told.residual != null && t("residual", { value: small(told.residual) }),
     told.seconds != null && t("seconds", { value: number(told.seconds, 0) }),
     left != null && t("secondsLeft", { value: number(left, 0) }),
   ].filter(Boolean);

@@ -25,7 +25,7 @@ export default function JobsPage() {
       <Group justify="space-between">
         <Title order={1}>{t("jobs")}</Title>
         <NativeSelect
-          aria-label={t("filterByState")}
+          label={t("filterByState")}
           value={status}
           onChange={(event) => setStatus(event.currentTarget.value as Job["status"] | "")}
           data={[
@@ -37,7 +37,7 @@ export default function JobsPage() {
       <ErrorNote error={jobs.error} />
       {jobs.data?.items.length === 0 && <Text c="dimmed">{t("noJobs")}</Text>}
       {jobs.data?.items.map((job) => (
-        <JobCard key={job.id} job={job} />
+        <JobCard key={job.id} job={job} elsewhere />
       ))}
     </Stack>
   );

@@ -80,7 +80,11 @@ interface VisitProps {
 }
 
 function Visit({ visit, results, chosen, onToggle }: VisitProps) {
-  const { t, date } = useI18n();
+  const { t, date, moment } = useI18n();
+  const nameOf = ({ created_at, summary }: Result) => {
+    const trials = (summary.trials as string[] | undefined) ?? [];
+    return [t("resultOf", { date: moment(created_at) }), ...trials].join(" · ");
+  };
   return (
     <Paper withBorder p="md">
       <Group justify="space-between">
@@ -95,12 +99,12 @@ function Visit({ visit, results, chosen, onToggle }: VisitProps) {
       {results.map((result) => (
         <Group key={result.id} mt="xs" gap="xs">
           <Checkbox
-            aria-label={t("chooseToCompare")}
+            aria-label={`${t("chooseToCompare")}: ${nameOf(result)}`}
             checked={chosen.includes(result.id)}
             onChange={() => onToggle(result.id)}
           />
           <Anchor component={Link} href={`/results/${result.id}`}>
-            {t("resultOf", { date: date(result.created_at) })}
+            {nameOf(result)}
           </Anchor>
           {!result.converged && <Badge color="orange">{t("notConverged")}</Badge>}
         </Group>

@@ -3,6 +3,7 @@ import { Button, Group, NativeSelect, SegmentedControl, Stack, Text, Title } fro
 import { useDisclosure } from "@mantine/hooks";
 import type { Schemas } from "../api/client";
 import { PALETTES, useColours, usePalette, type Palette } from "../app/colours";
+import { en } from "../i18n/en";
 import { useI18n, type Key } from "../i18n/I18n";
 import { CyclePanel, type Line, type PanelData } from "./CyclePanel";
 import type { Cursor } from "./cursor";
@@ -26,6 +27,7 @@ export function CurvesTab({ resultId, document, cursor, videos }: Props) {
   const [view, setView] = useState("average");
   const [in3d, scene] = useDisclosure();
   const [inVideo, film] = useDisclosure();
+  const axesOf = (words: string) => (AXES[words] ? t(AXES[words]) : words);
   const [picked, setPicked] = useState<PanelLayout | null>(null);
   const cycles = useCycles(resultId, document, view === "consistency");
   const strides = useMemo(() => stridesIn(document), [document]);
@@ -76,7 +78,7 @@ export function CurvesTab({ resultId, document, cursor, videos }: Props) {
             <>
               <Title order={2}>{t("kinetics")}</Title>
               <Text size="sm" c="dimmed">
-                {t("momentsIn", { axes: document.kinetics.moments_in })}
+                {t("momentsIn", { axes: axesOf(document.kinetics.moments_in) })}
               </Text>
               {document.kinetics.missing.map((sentence) => (
                 <Text size="sm" key={sentence}>
@@ -108,6 +110,11 @@ export function CurvesTab({ resultId, document, cursor, videos }: Props) {
   );
 }
 
+/** Axes of the moments, as result.json words them. */
+const AXES: Readonly<Record<string, Key>> = Object.fromEntries(
+  (["axes_distal", "axes_proximal", "axes_joint", "axes_laboratory"] as const).map((key) => [en[key], key]),
+);
+
 function emgLayouts(envelopes: Readonly<Record<string, CurveSides>>): PanelLayout[] {
   return Object.entries(envelopes).map(([name, curve]) => {
     const peaks = SIDES.flatMap((side) => curve[side]?.mean ?? []).filter((value) => value !== null);
@@ -138,7 +145,7 @@ function panelSource(document: ResultDocument, cycles: Cycles | null, t: Sided):
     if (known) return known;
     const lines = SIDES.flatMap((side): Line[] => {
       const single = cycles?.[name]?.[side];
-      if (single) return single.map((mean) => ({ side, mean, faint: true, label: t(side) }));
+      if (single) return single.map((mean, index) => ({ side, mean, faint: true, label: `${t(side)} ${index + 1}` }));
       const curve = curves[name]?.[side];
       return curve ? [{ side, mean: curve.mean, sd: curve.sd, label: t(side) }] : [];
     });

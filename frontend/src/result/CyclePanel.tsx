@@ -3,7 +3,7 @@ import { useEffect, useMemo, useRef, type KeyboardEvent } from "react";
 import { Paper, Text } from "@mantine/core";
 import uPlot from "uplot";
 import { useColours, type Colours } from "../app/colours";
-import { useI18n } from "../i18n/I18n";
+import { useI18n, type Key } from "../i18n/I18n";
 import type { Cursor } from "./cursor";
 import { SIDES, type Band, type Side, type Values } from "./document";
 import type { PanelLayout } from "./panels";
@@ -119,12 +119,12 @@ function byKey(event: KeyboardEvent, cursor: Cursor, pick: () => void): void {
 }
 
 export function CyclePanel({ layout, data, cursor, onPick }: Props) {
-  const { name, t, number } = useI18n();
+  const { name, t, number, plain, unit } = useI18n();
   const colours = useColours();
   const place = useRef<HTMLDivElement>(null);
   const readout = useRef<HTMLDivElement>(null);
   const built = useMemo(() => build(data, colours), [data, colours]);
-  const [down, up] = layout.directions;
+  const ways = layout.directions.filter(Boolean).map((each) => t(`way_${each}` as Key));
   const title = name(layout.name);
 
   useEffect(() => {
@@ -135,6 +135,7 @@ export function CyclePanel({ layout, data, cursor, onPick }: Props) {
       grid: { stroke: colours.grid, width: 1 },
       ticks: { show: false },
       font: "11px system-ui",
+      values: (_, ticks) => ticks.map(plain),
     };
     const chart = new uPlot(
       {
@@ -170,25 +171,27 @@ export function CyclePanel({ layout, data, cursor, onPick }: Props) {
       leave();
       chart.destroy();
     };
-  }, [built, colours, cursor, data, layout]);
+  }, [built, colours, cursor, data, layout, plain]);
 
   useEffect(() => {
+    // A moment or power of 0.04 is none that is zero.
+    const digits = layout.scale[1] - layout.scale[0] < 20 ? 2 : 1;
     const marked = data.lines.filter((line) => !line.faint);
     return cursor.listen((percent) => {
       if (!readout.current) return;
       readout.current.textContent =
         percent === null
           ? ""
-          : marked.map((line) => `${line.label} ${number(line.mean[Math.round(percent)])}`).join("  ");
+          : marked.map((line) => `${line.label} ${number(line.mean[Math.round(percent)], digits)}`).join("  ");
     });
-  }, [cursor, data.lines, number]);
+  }, [cursor, data.lines, layout, number]);
 
   return (
     <Paper withBorder p={6} component="figure" m={0}>
       <Text component="figcaption" size="sm" fw={600}>
         {title}{" "}
         <Text span size="xs" c="dimmed">
-          {[down, up].filter(Boolean).join(" / ")} [{layout.unit}]
+          {ways.join(" / ")} [{unit(layout.unit)}]
         </Text>
       </Text>
       <div

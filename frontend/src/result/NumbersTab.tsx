@@ -1,5 +1,6 @@
 import { List, Stack, Table, Text, Title } from "@mantine/core";
 import { useI18n } from "../i18n/I18n";
+import { digitsOf } from "./digits";
 import { SIDES, type ResultDocument } from "./document";
 
 interface Row {
@@ -18,10 +19,11 @@ export function NumbersTab({ document }: { document: ResultDocument }) {
   const walk = quantities.map((quantity): Row => {
     const [left, right] = SIDES.map((side) => {
       const told = spatiotemporal[side];
-      return spread(told?.mean[quantity], told?.sd[quantity], 2);
+      return spread(told?.mean[quantity], told?.sd[quantity], digitsOf(quantity));
     });
     const norm = reference?.spatiotemporal?.[quantity];
-    return { name: name(quantity), left: left ?? "–", right: right ?? "–", norm: spread(norm?.mean, norm?.sd, 2) };
+    const usual = spread(norm?.mean, norm?.sd, digitsOf(quantity));
+    return { name: name(quantity), left: left ?? "–", right: right ?? "–", norm: usual };
   });
   const variables = Object.keys(scores?.left?.gvs ?? scores?.right?.gvs ?? {});
   const profile = variables.map((variable): Row => {
@@ -71,7 +73,7 @@ function useSpread() {
 function Sides({ rows }: { rows: readonly Row[] }) {
   const { t } = useI18n();
   return (
-    <Table striped>
+    <Table striped layout="fixed">
       <Table.Thead>
         <Table.Tr>
           <Table.Th>{t("quantity")}</Table.Th>
@@ -95,14 +97,14 @@ function Sides({ rows }: { rows: readonly Row[] }) {
 }
 
 function Predicted({ prediction }: { prediction: NonNullable<ResultDocument["prediction"]> }) {
-  const { t, name, number } = useI18n();
+  const { t, name, number, unit } = useI18n();
   return (
     <>
       <Title order={2}>{t("predictedChanges")}</Title>
       <Text>
         {Object.entries(prediction.request)
-          .map(([quantity, value]) => `${name(quantity)} ${number(value, 2)} ${prediction.units[quantity] ?? ""}`)
-          .join(", ")}
+          .map(([quantity, value]) => [name(quantity), number(value, 2), unit(prediction.units[quantity] ?? "")].join(" "))
+          .join(" · ")}
         {prediction.message && ` · ${prediction.message}`}
       </Text>
       <Table>
@@ -117,8 +119,8 @@ function Predicted({ prediction }: { prediction: NonNullable<ResultDocument["pre
           {Object.entries(prediction.identified).map(([quantity, value]) => (
             <Table.Tr key={quantity}>
               <Table.Th fw={400}>{name(quantity)}</Table.Th>
-              <Table.Td>{number(value, 3)}</Table.Td>
-              <Table.Td>{number(prediction.predicted[quantity], 3)}</Table.Td>
+              <Table.Td>{number(value, digitsOf(quantity))}</Table.Td>
+              <Table.Td>{number(prediction.predicted[quantity], digitsOf(quantity))}</Table.Td>
             </Table.Tr>
           ))}
         </Table.Tbody>

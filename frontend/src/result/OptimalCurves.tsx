@@ -32,7 +32,7 @@ export function OptimalCurves({ walk }: { walk: Walk }) {
   return (
     <>
       <Text size="sm" c="dimmed">
-        {t("optimalLegend", { trial, side: t(side), start: number(start_s, 2), end: number(end_s, 2) })}
+        {t("optimalLegend", { trial, side: t(side).toLowerCase(), start: number(start_s, 2), end: number(end_s, 2) })}
       </Text>
       <div className="panels">
         {panels.map(({ layout, data }) => (

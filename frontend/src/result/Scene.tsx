@@ -34,7 +34,7 @@ const SPEEDS = ["0.1", "0.25", "0.5", "1"];
 
 export function Scene(props: SceneProps) {
   const { viewer } = props;
-  const { t, number } = useI18n();
+  const { t, name, number } = useI18n();
   const scheme = useComputedColorScheme("light");
   const [side, setSide] = useState<Side>("left");
   const frame = useRef<HTMLIFrameElement>(null);
@@ -69,7 +69,10 @@ export function Scene(props: SceneProps) {
         data={SIDES.map((value) => ({ value, label: t(value) }))}
       />
       <Text size="sm" data-testid="frame" data-frame={state?.frame}>
-        {state && `${number(state.time, 2)} s · ${t("frame", { number: state.frame })} ${state.phase}`}
+        {state &&
+          [`${number(state.time, 2)} s`, t("frame", { number: state.frame }), state.phase && name(state.phase)]
+            .filter(Boolean)
+            .join(" · ")}
       </Text>
       <Capture frame={frame} order={order} state={state} />
     </Stack>
@@ -77,7 +80,7 @@ export function Scene(props: SceneProps) {
 }
 
 function Playback({ state, order }: { state: SceneState | null; order: Order }) {
-  const { t } = useI18n();
+  const { t, plain } = useI18n();
   return (
     <Group gap="xs">
       <Button size="xs" aria-pressed={state?.playing ?? false} onClick={() => order({ play: !state?.playing })}>
@@ -88,7 +91,7 @@ function Playback({ state, order }: { state: SceneState | null; order: Order }) 
         aria-label={t("speed")}
         onChange={(event) => order({ speed: Number(event.currentTarget.value) })}
         defaultValue="1"
-        data={SPEEDS.map((value) => ({ value, label: `${value} ×` }))}
+        data={SPEEDS.map((value) => ({ value, label: `${plain(Number(value))} ×` }))}
       />
       <Switch
         size="xs"

@@ -1,8 +1,8 @@
 /** Share of each criterion in the cost at each instant of the cycle, stacked. */
-import { useMemo } from "react";
+import { useCallback, useMemo } from "react";
 import { Group, Text } from "@mantine/core";
 import type uPlot from "uplot";
-import { CRITERIA, useColours } from "../app/colours";
+import { criterionColour, useColours } from "../app/colours";
 import { Plot } from "../app/Plot";
 import { useI18n } from "../i18n/I18n";
 import type { Shares } from "./walk";
@@ -19,15 +19,12 @@ export function stacked(rows: Shares["rows"]): (number | null)[][] {
   );
 }
 
-function colourOf(index: number): string {
-  return CRITERIA[index % CRITERIA.length] ?? "gray";
-}
-
 export function ShareChart({ shares }: { shares: Shares }) {
   const { t, name } = useI18n();
   const colours = useColours();
+  const colourOf = useCallback((index: number) => criterionColour(colours, index), [colours]);
   const options = useMemo<Omit<uPlot.Options, "width" | "height">>(() => {
-    const axis: uPlot.Axis = { stroke: colours.text, grid: { stroke: colours.grid }, font: "11px system-ui" };
+    const axis: uPlot.Axis = { stroke: colours.text, grid: { stroke: colours.grid, width: 1 }, font: "11px system-ui" };
     const edges = shares.rows.map((_, index): uPlot.Series => {
       const [colour, points] = [colourOf(index), { show: false }];
       // The lowest reaches down to zero, the others down to the one below.
@@ -37,11 +34,14 @@ export function ShareChart({ shares }: { shares: Shares }) {
       scales: { x: { time: false, range: [0, 100] }, y: { range: [0, 100] } },
       legend: { show: false },
       cursor: { show: false },
-      axes: [{ ...axis, space: 60, label: t("percentOfCycle"), labelSize: 20 }, axis],
+      axes: [
+        { ...axis, space: 60, label: t("percentOfCycle"), labelSize: 20 },
+        { ...axis, values: (_, ticks) => ticks.map((tick) => `${tick} %`) },
+      ],
       series: [{}, ...edges],
       bands: shares.rows.slice(1).map((_, index) => ({ series: [index + 2, index + 1], fill: `${colourOf(index + 1)}cc` })),
     };
-  }, [shares, colours, t]);
+  }, [shares, colours, colourOf, t]);
   const data = useMemo<uPlot.AlignedData>(() => [PERCENT, ...stacked(shares.rows)], [shares]);
   return (
     <>

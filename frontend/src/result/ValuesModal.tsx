@@ -10,29 +10,42 @@ interface Props {
   onClose: () => void;
 }
 
-/** Lines of a panel as rows of text, the header first. */
-export function rowsOf(data: PanelData): string[][] {
-  const header = ["percent", ...data.lines.flatMap(({ label, sd }) => (sd ? [`${label} mean`, `${label} sd`] : [label]))];
-  const rows = Array.from({ length: 101 }, (_, percent) => [
-    String(percent),
-    ...data.lines.flatMap(({ mean, sd }) => (sd ? [mean[percent], sd[percent]] : [mean[percent]])).map((value) =>
-      value == null ? "" : value.toFixed(4),
-    ),
+type Row = (number | null)[];
+
+/** Per cent of the cycle, then each line's mean and, where it has one, standard deviation. */
+function rowsOf(data: PanelData): Row[] {
+  return Array.from({ length: 101 }, (_, percent) => [
+    percent,
+    ...data.lines.flatMap(({ mean, sd }) => [mean, ...(sd ? [sd] : [])].map((values) => values[percent] ?? null)),
   ]);
-  return [header, ...rows];
+}
+
+/** The same for programs: English titles and decimal points whatever the page's language. */
+function csvOf(data: PanelData, rows: readonly Row[]): string {
+  const header = data.lines.flatMap(({ side, sd }, index) => {
+    const cycle = data.lines.slice(0, index + 1).filter((each) => each.side === side).length;
+    return sd ? [`${side} mean`, `${side} sd`] : [`${side} ${cycle}`];
+  });
+  const lines = rows.map(([percent, ...values]) => [percent, ...values.map((value) => value?.toFixed(4) ?? "")]);
+  return [["percent", ...header], ...lines].map((line) => line.join(",")).join("\n");
 }
 
 export function ValuesModal({ layout, data, onClose }: Props) {
-  const { t, name } = useI18n();
+  const { t, name, number, unit } = useI18n();
   if (!layout || !data) return null;
-  const [header = [], ...rows] = rowsOf(data);
-  const csv = [header, ...rows].map((row) => row.join(",")).join("\n");
+  const rows = rowsOf(data);
+  const header = [
+    t("percentOfCycle"),
+    ...data.lines.flatMap(({ label: line, sd }) =>
+      sd ? [t("meanOf", { name: line }), t("sdOf", { name: line })] : [line],
+    ),
+  ];
   return (
     <Modal
       opened
       size="lg"
       onClose={onClose}
-      title={`${name(layout.name)} [${layout.unit}]`}
+      title={`${name(layout.name)} [${unit(layout.unit)}]`}
       closeButtonProps={{ "aria-label": t("close") }}
     >
       <Button
@@ -40,9 +53,9 @@ export function ValuesModal({ layout, data, onClose }: Props) {
         mb="sm"
         variant="default"
         download={`${layout.name}.csv`}
-        href={`data:text/csv;charset=utf-8,${encodeURIComponent(csv)}`}
+        href={`data:text/csv;charset=utf-8,${encodeURIComponent(csvOf(data, rows))}`}
       >
-        csv
+        {t("saveCsv")}
       </Button>
       <ScrollArea h={420} viewportProps={{ tabIndex: 0, "aria-label": name(layout.name), role: "region" }}>
         <Table stickyHeader>
@@ -57,7 +70,7 @@ export function ValuesModal({ layout, data, onClose }: Props) {
             {rows.map((row) => (
               <Table.Tr key={row[0]}>
                 {row.map((cell, index) => (
-                  <Table.Td key={index}>{cell}</Table.Td>
+                  <Table.Td key={index}>{number(cell, index === 0 ? 0 : 2)}</Table.Td>
                 ))}
               </Table.Tr>
             ))}

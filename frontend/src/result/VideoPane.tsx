@@ -1,6 +1,6 @@
 /** A video of the visit beside the curves, at the cursor's time; while it plays, it moves the cursor. */
 import { useEffect, useRef, useState } from "react";
-import { Group, NativeSelect, NumberInput, Paper } from "@mantine/core";
+import { Group, NativeSelect, NumberInput, Paper, Text } from "@mantine/core";
 import { useLocalStorage } from "@mantine/hooks";
 import type { Schemas } from "../api/client";
 import { useI18n } from "../i18n/I18n";
@@ -22,6 +22,7 @@ export function VideoPane({ videos, strides, cursor }: Props) {
   const { t } = useI18n();
   const player = useRef<HTMLVideoElement>(null);
   const [chosen, setChosen] = useState(videos[0]?.id ?? "");
+  const [unplayable, setUnplayable] = useState("");
   const trials = [...new Set(strides.map((each) => each.trial))];
   const [trial, setTrial] = useState(trials[0] ?? "");
   // Camera and motion capture start at different times; nobody but the viewer knows how far apart.
@@ -52,8 +53,14 @@ export function VideoPane({ videos, strides, cursor }: Props) {
         aria-label={t("video")}
         src={`/api/v1/attachments/${chosen}/file`}
         onTimeUpdate={follow}
+        onError={() => setUnplayable(chosen)}
         style={{ width: "100%", maxHeight: 420 }}
       />
+      {unplayable === chosen && (
+        <Text size="sm" role="alert">
+          {t("videoUnplayable")}
+        </Text>
+      )}
       <Group gap="xs" mt="xs" align="end">
         {videos.length > 1 && (
           <NativeSelect

@@ -1,11 +1,12 @@
 /** The weights as bars, with their uncertainty and what is usual. */
 import { Group, Paper, Stack, Text } from "@mantine/core";
-import { CRITERIA } from "../app/colours";
+import { criterionColour, useColours } from "../app/colours";
 import { useI18n } from "../i18n/I18n";
 import type { Criterion, Reference, Weights } from "./document";
 
 export function WeightBars({ weights, reference }: { weights: Weights; reference: Reference | null }) {
   const { name, number, t } = useI18n();
+  const colours = useColours();
   return (
     <Paper withBorder p="md">
       <Stack gap="xs" data-testid="weights">
@@ -14,7 +15,7 @@ export function WeightBars({ weights, reference }: { weights: Weights; reference
           return (
             <Group key={each.name} wrap="nowrap" align="center">
               <Text w={200}>{name(each.name)}</Text>
-              <Bar criterion={each} colour={CRITERIA[index % CRITERIA.length] ?? "gray"} norm={norm} />
+              <Bar criterion={each} colour={criterionColour(colours, index)} norm={norm} />
               <Text w={150} ta="right">
                 {number(100 * each.weight)} {each.sd !== null && `± ${number(100 * each.sd)} `}%
               </Text>

@@ -6,7 +6,7 @@ import type { Weights } from "./document";
 const DEGREES = 180 / Math.PI;
 
 export function WeightsFit({ weights }: { weights: Weights }) {
-  const { t, name, number } = useI18n();
+  const { t, name, number, small, told } = useI18n();
   const { fit, comparison, solver } = weights;
   const rows: [string, number | null][] = [
     [t("foundWeights"), fit.rms_rad],
@@ -16,7 +16,7 @@ export function WeightsFit({ weights }: { weights: Weights }) {
       value,
     ]),
     ...Object.entries(fit.unseen_stride_rms_rad ?? {}).map(([stride, value]): [string, number] => [
-      t("unseenStride", { name: stride }),
+      t("unseenStride", { name: told(stride) }),
       value,
     ]),
   ];
@@ -35,7 +35,7 @@ export function WeightsFit({ weights }: { weights: Weights }) {
       </Table>
       <Text size="sm" c="dimmed">
         {t("certificate", {
-          residual: solver.kkt_residual?.toExponential(1) ?? "–",
+          residual: small(solver.kkt_residual),
           iterations: solver.iterations,
           seconds: number(solver.seconds, 0),
         })}

@@ -1,5 +1,5 @@
 /** Videos and documents of a visit. */
-import { Anchor, Button, Group, Paper, Text } from "@mantine/core";
+import { Anchor, Button, Group, Paper, Text, Title } from "@mantine/core";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useAccount } from "../account/Account";
 import { client, unwrap } from "../api/client";
@@ -34,6 +34,7 @@ export function Attachments({ visitId }: { visitId: string }) {
   return (
     <>
       <ErrorNote error={attachments.error ?? remove.error} />
+      {(attachments.data?.items.length ?? 0) > 0 && <Title order={2}>{t("attachments")}</Title>}
       {attachments.data?.items.map((each) => (
         <Paper withBorder p="sm" key={each.id}>
           <Group justify="space-between">
@@ -42,7 +43,7 @@ export function Attachments({ visitId }: { visitId: string }) {
                 {each.name}
               </Anchor>
               <Text size="sm" c="dimmed">
-                {number(each.size / 1e6)} MB
+                {each.size < 1e5 ? `${number(each.size / 1e3)} kB` : `${number(each.size / 1e6)} MB`}
               </Text>
             </Group>
             {may("patients:write") && (

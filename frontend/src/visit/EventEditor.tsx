@@ -1,10 +1,14 @@
-/** Foot strikes and foot offs of a walk: as the file has them, or corrected for the next analysis. */
+/** Events of a walk on a time line and in a table: as the file has them, or corrected for the next analysis. */
 import { Badge, Button, Group, Stack, Text } from "@mantine/core";
 import { RowsEditor, type Row } from "../app/RowsEditor";
 import { useI18n } from "../i18n/I18n";
 import type { CorrectedEvent } from "./events";
+import type { Timing } from "./inspection";
+import { TimeLine } from "./TimeLine";
+import { axisOf } from "./timeAxis";
 
 interface Props {
+  timing: Timing | null;
   stored: readonly CorrectedEvent[];
   corrected: readonly CorrectedEvent[] | undefined;
   onChange: (events: readonly CorrectedEvent[] | undefined) => void;
@@ -12,9 +16,11 @@ interface Props {
 
 const BLANK: Row = { side: "left", kind: "foot_strike", time_s: 0 };
 
-export function EventEditor({ stored, corrected, onChange }: Props) {
+export function EventEditor({ timing, stored, corrected, onChange }: Props) {
   const { t, name } = useI18n();
-  const rows = (corrected ?? stored).map(({ side, kind, time_s }): Row => ({ side, kind, time_s }));
+  const events = corrected ?? stored;
+  const axis = axisOf(timing, events);
+  const rows = events.map(({ side, kind, time_s }): Row => ({ side, kind, time_s }));
   return (
     <Stack gap={4} mt="sm">
       <Group>
@@ -27,6 +33,7 @@ export function EventEditor({ stored, corrected, onChange }: Props) {
         )}
       </Group>
       {rows.length === 0 && <Text size="sm">{t("eventsAreDetected")}</Text>}
+      {events.length > 0 && <TimeLine events={events} axis={axis} onChange={onChange} />}
       <RowsEditor
         label={t("events")}
         columns={[
@@ -36,7 +43,7 @@ export function EventEditor({ stored, corrected, onChange }: Props) {
             label: t("kind"),
             choices: ["foot_strike", "foot_off"].map((value) => ({ value, label: name(value) })),
           },
-          { key: "time_s", label: `${t("time")} [s]`, step: 0.01 },
+          { key: "time_s", label: `${t("time")} [s]`, step: axis.frame, digits: 3 },
         ]}
         rows={rows}
         blank={BLANK}

@@ -46,7 +46,7 @@ export function RecordingCard({ recording, corrected, onCorrect }: Props) {
           <Text fw={600}>{recording.name}</Text>
           {found ? <Badges found={found} /> : <Loader size="xs" role="status" aria-label={t("reading")} />}
         </Group>
-        <Group gap="xs">
+        <Group gap="xs" ml="auto">
           <NativeSelect
             size="xs"
             aria-label={t("kindOf", { name: recording.name })}
@@ -85,7 +85,12 @@ export function RecordingCard({ recording, corrected, onCorrect }: Props) {
         <Collapse expanded={open}>
           <Details found={found} />
           {recording.kind === "walk" && may("analyses:run") && (
-            <EventEditor stored={found.eventTimes} corrected={corrected} onChange={onCorrect} />
+            <EventEditor
+              timing={found.timing}
+              stored={found.eventTimes}
+              corrected={corrected}
+              onChange={onCorrect}
+            />
           )}
         </Collapse>
       )}
@@ -99,8 +104,8 @@ function Badges({ found }: { found: Found }) {
     <Group gap={6}>
       <Badge variant="default">{t("markerCount", { count: found.markers.length })}</Badge>
       <Badge variant="default">{t(found.gaps.length ? "gapCount" : "noGaps", { count: found.gaps.length })}</Badge>
-      <Badge variant="default">{t(found.plates === "none" ? "noPlates" : "withPlates")}</Badge>
-      <Badge variant="default">{t(found.events === "none" ? "noEvents" : "withEvents")}</Badge>
+      <Badge variant="default">{t(found.plates.length ? "withPlates" : "noPlates")}</Badge>
+      <Badge variant="default">{t(found.events.length ? "withEvents" : "noEvents")}</Badge>
       {found.warnings.length > 0 && (
         <Badge variant="outline" color="orange">
           {t("warningCount", { count: found.warnings.length })}
@@ -111,13 +116,27 @@ function Badges({ found }: { found: Found }) {
 }
 
 function Details({ found }: { found: Found }) {
-  const { t } = useI18n();
+  const { t, name, number, plain } = useI18n();
+  const { timing } = found;
+  const events = found.events.map(({ count, side, kind }) => `${count} × ${name(kind)} ${name(side).toLowerCase()}`);
+  const plates = found.plates.map((each) =>
+    t("plateFound", { number: each.number, newton: each.newton, rate: plain(each.rate) }),
+  );
   const rows: [string, string][] = [
-    [t("frames"), found.frames],
+    [
+      t("frames"),
+      timing
+        ? t("framesFound", {
+            frames: timing.frames,
+            rate: plain(timing.rate),
+            seconds: number(timing.frames / timing.rate, 2),
+          })
+        : "–",
+    ],
     [t("markers"), found.markers.join(", ")],
     [t("gaps"), found.gaps.join(", ") || "–"],
-    [t("events"), found.events],
-    [t("plates"), found.plates],
+    [t("events"), events.join(", ") || "–"],
+    [t("plates"), plates.join(", ") || "–"],
     [t("warnings"), found.warnings.join("; ") || "–"],
   ];
   return (

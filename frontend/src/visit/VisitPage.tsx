@@ -16,16 +16,14 @@ import { Examination } from "./Examination";
 import { RecordingCard } from "./RecordingCard";
 import { RunPanel } from "./RunPanel";
 import { Upload } from "./Upload";
+import { visitQuery } from "./visitQuery";
 
 export default function VisitPage({ id }: { id: string }) {
   const { t, date } = useI18n();
   const { may } = useAccount();
   const [corrections, setCorrections] = useState<Corrections>({});
   const path = { session_id: id };
-  const visit = useQuery({
-    queryKey: ["visit", id],
-    queryFn: () => unwrap(client.GET("/api/v1/sessions/{session_id}", { params: { path } })),
-  });
+  const visit = useQuery(visitQuery(id));
   const recordings = useQuery({
     queryKey: ["recordings", id],
     queryFn: () =>

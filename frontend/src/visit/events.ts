@@ -16,6 +16,22 @@ export function eventsIn(text: string | undefined): CorrectedEvent[] {
   });
 }
 
+export interface EventCount {
+  count: number;
+  side: CorrectedEvent["side"];
+  kind: CorrectedEvent["kind"];
+}
+
+const COUNTED = /^(\d+) (left|right) (foot strike|foot off)$/;
+
+/** Numbers of events out of the inspection's row, such as "3 left foot off, 2 right foot strike". */
+export function countsIn(text: string | undefined): EventCount[] {
+  return (text ?? "").split(", ").flatMap((each) => {
+    const [, count, side, kind] = COUNTED.exec(each) ?? [];
+    return count && side && kind ? [{ count: Number(count), side, kind: kind.replace(" ", "_") } as EventCount] : [];
+  });
+}
+
 /** Corrections under the names of their trials, as an analysis takes them. */
 export function byTrial(
   corrections: Corrections,
