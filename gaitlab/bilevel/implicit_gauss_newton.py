@@ -105,7 +105,7 @@ class _Search:
                 self.state, self.damping = trial, max(self.damping / 5.0, 1e-9)
                 return "converged: the fit does not improve" if decrease <= self.method.tol_decrease else None
             # A damping far too small hardly changes the step: every failure makes for a larger leap.
-            self.damping, growth = self.damping * growth, 4.0 * growth
+            self.damping, growth = max(self.damping * growth, self.method.damping), 4.0 * growth
         return "converged: no smaller step improves the fit" if solved else UNSOLVED
 
     def _subproblem(self, jacobian: np.ndarray) -> np.ndarray:
