@@ -16,10 +16,11 @@ from ..clinical.comparison import Member, compare
 from ..clinical.document import Document
 from ..errors import InvalidRequest, OutputError
 from ..pipelines.compare import write_tables
-from ..storage.models import Job, Recording, ReportVersion, Result, ResultFile
+from ..storage.models import Job, Recording, Result, ResultFile
 from .caller import Call
 from .files import copy_out
 from .problems import Absent
+from .report_files import newest_pdf
 from .services import Services
 
 DOCUMENT = "result.json"
@@ -91,15 +92,12 @@ class Source:
 
 def source_of(call: Call, result: Result, trial: str) -> Source:
     """What exports of a result need."""
-    query = select(ReportVersion.pdf_sha256).where(
-        ReportVersion.result_id == result.id, ReportVersion.pdf_sha256.is_not(None)
-    )
     return Source(
         result_id=result.id,
         trial=trial,
         files=files_of(call, result.id),
         recording=_recording(call, result, trial),
-        pdf=call.db.scalars(query.order_by(ReportVersion.number.desc()).limit(1)).first(),
+        pdf=newest_pdf(call, result.id),
     )
 
 

@@ -13,8 +13,6 @@ from ...storage.models import (
     JobStatus,
     ReportSignature,
     ReportVersion,
-    Result,
-    ResultFile,
     User,
 )
 from ...storage.models import Job as JobRow
@@ -30,6 +28,7 @@ from ..passwords import verify_password
 from ..permissions import Permission
 from ..problems import Absent
 from ..repetition import RepetitionKey, once
+from ..report_files import JOB, collect
 from ..routing import api_router
 from ..schemas.forms import Page
 from ..schemas.work import NewReport, NewSignature, Report, ReportFilter, Signature
@@ -38,24 +37,10 @@ router = api_router("/reports", tag="reports")
 Reader = Annotated[Call, allowed(Permission.REPORTS_READ)]
 Writer = Annotated[Call, allowed(Permission.REPORTS_WRITE)]
 Signer = Annotated[Call, allowed(Permission.REPORTS_SIGN)]
-FILES = {"pdf": "report.pdf", "html": "report.html"}
-JOB = "job_id"
-"""Key of a version's content: the job that makes its files."""
-
-
-def _collect(call: Call, row: ReportVersion) -> None:
-    """Take over the files that the report's job has made meanwhile."""
-    job_id = row.content.get(JOB)
-    if job_id is None or row.pdf_sha256 is not None:
-        return
-    query = select(ResultFile.name, ResultFile.sha256).join(Result, Result.id == ResultFile.result_id)
-    made = dict(call.db.execute(query.where(Result.job_id == UUID(job_id))).all())
-    row.pdf_sha256, row.html_sha256 = made.get(FILES["pdf"]), made.get(FILES["html"])
-    call.db.flush()
 
 
 def _answer(call: Call, row: ReportVersion) -> Report:
-    _collect(call, row)
+    collect(call, row)
     query = select(ReportSignature, User.display_name).join(User, User.id == ReportSignature.user_id)
     rows = call.db.execute(query.where(ReportSignature.report_id == row.id).order_by(ReportSignature.created_at))
     return Report(
@@ -148,7 +133,7 @@ def download_report_page(call: Reader, report_id: UUID) -> Response:
 
 def _file(call: Call, report_id: UUID, kind: str, media_type: str) -> Response:
     row = visibility.part(call, ReportVersion, report_id, "export")
-    _collect(call, row)
+    collect(call, row)
     sha256 = row.pdf_sha256 if kind == "pdf" else row.html_sha256
     if sha256 is None:
         raise Absent(f"{kind} of report", f"{report_id}{_why_not(call, row)}")
@@ -164,7 +149,7 @@ def _why_not(call: Call, row: ReportVersion) -> str:
 def sign_report(call: Signer, report_id: UUID, body: NewSignature) -> Report:
     """Sign a version. What was signed is never changed; a correction is a new version."""
     row = visibility.part(call, ReportVersion, report_id, "sign")
-    _collect(call, row)
+    collect(call, row)
     if row.pdf_sha256 is None:
         raise Conflict(f"the report has no PDF yet{_why_not(call, row)}: sign what can be read")
     _check_signer(call, body.password)
